@@ -286,6 +286,9 @@ TEST(Levels, ASolverKeepsItsOwn) {
     EXPECT_EQ(solve_inside(solver, target, cores).q, solver.solve(target).q)
         << "seed " << iksel_test::seed();
   }
+  // Nothing reads the variable again.
+  const ForcedLevel none("none");
+  EXPECT_FALSE(solver.solve_all(robot.fk(q.row(0)), {}).all.empty());
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // Scenes: the lanes of every instruction set against distances one by one, and points in a grid
 // against all points.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 #include <vector>
@@ -97,6 +99,75 @@ TEST(SceneLanes, AgreeWithTheDepthsOfContactsAtEveryLevel) {
     }
     EXPECT_GT(found, 20) << name;
   }
+}
+
+TEST(SceneLanes, TakeAnglesOfAnySizeAndNothingElse) {
+  const Robot& robot = iksel_test::robot("ur3");
+  const iksel::Matrix q = robot.random_configurations(60, 3);
+  for (const std::string& level : iksel_test::levels()) {
+    const iksel_test::ForcedLevel forced(level);
+    const Scene scene = furnished(robot, 1);
+    int found = 0;
+    bool none_is_free = true;
+    for (Eigen::Index i = 0; i < q.rows(); ++i) {
+      JointVector far = q.row(i);
+      far[i % 6] *= std::pow(10.0, 5.0 * static_cast<double>(i % 60));
+      const bool is_free = scene.is_free(far);
+      EXPECT_NE(is_free, !scene.contacts(far).empty()) << far.transpose() << " at " << level;
+      found += static_cast<int>(is_free);
+      for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        JointVector bad = q.row(i);
+        bad[i % 6] = none;
+        scene.find_free(bad.data(), 1, &none_is_free);
+        EXPECT_FALSE(none_is_free) << bad.transpose() << " at " << level;
+      }
+    }
+    EXPECT_GT(found, 5) << level;
+    EXPECT_LT(found, 55) << level;
+  }
+}
+
+TEST(Scene, ShapesHaveTheirOwnSizesOnly) {
+  const Robot& robot = iksel_test::robot("ur3");
+  const iksel::Matrix q = robot.random_configurations(40, 3);
+  const Pose place = robot.fk(JointVector::Zero(6));
+  for (const double left_over : {1.0, std::nan("")}) {
+    for (Obstacle obstacle : {Obstacle::sphere(0.1, place), Obstacle::box({0.2, 0.1, 0.3}, place),
+                              Obstacle::capsule(0.05, 0.3, place)}) {
+      const bool is_box = obstacle.shape == Obstacle::Shape::box;
+      if (is_box) obstacle.radius = left_over;
+      if (!is_box) obstacle.size.setConstant(left_over);
+      if (obstacle.shape != Obstacle::Shape::capsule) obstacle.length = left_over;
+      Scene scene(robot, balls_on(robot));
+      scene.set("it", obstacle);
+      for (Eigen::Index i = 0; i < q.rows(); ++i) {
+        const JointVector at = q.row(i);
+        EXPECT_EQ(scene.is_free(at), scene.contacts(at).empty()) << to_string(obstacle.shape);
+      }
+    }
+  }
+}
+
+TEST(Scene, WhatIsTooLargeIsRefused) {
+  const Robot& robot = iksel_test::robot("ur3");
+  Scene scene(robot, balls_on(robot));
+  const Pose here = Pose::Identity();
+  PointCloud points(2, 3);
+  points << -1.7e308, 0, 0, 1.7e308, 0, 0;
+  Pose far = here;
+  far.translation().x() = 1e200;
+  for (const Obstacle& obstacle :
+       {Obstacle::point_cloud(points, 0.1, here), Obstacle::sphere(1e200, here),
+        Obstacle::box({1, 1e9, 1}, here), Obstacle::capsule(1, 1e9, here),
+        Obstacle::half_space(here, 1e9), Obstacle::sphere(1, far)}) {
+    EXPECT_THROW(scene.set("it", obstacle), iksel::InvalidArgumentError);
+  }
+  scene.set("it", Obstacle::sphere(1, here));
+  EXPECT_THROW(scene.move("it", far), iksel::InvalidArgumentError);
+  EXPECT_THROW(scene.attach("cup", {robot.tip_link(), {{{0, 0, 1e200}, 0.1}}, {}}),
+               iksel::InvalidArgumentError);
+  EXPECT_THROW(scene.attach("cup", {robot.tip_link(), {{{0, 0, 0}, 1e200}}, {}}),
+               iksel::InvalidArgumentError);
 }
 
 TEST(PointGrid, TouchesWhatAllPointsTouch) {

@@ -11,6 +11,7 @@
 #include "robots.hpp"
 #include "search/solution_set.hpp"
 #include "seeds/farthest_first.hpp"
+#include "simd/kernels.hpp"
 
 namespace {
 
@@ -85,7 +86,8 @@ TEST(FarthestFirst, IsThatOfThePlainRule) {
     const auto distance = [&](std::size_t a, std::size_t b) {
       return joints.distance(&q[6 * a], &q[6 * b]);
     };
-    const std::vector<std::size_t> chosen = iksel::farthest_first(joints, q.data(), n, 20);
+    const std::vector<std::size_t> chosen =
+        iksel::farthest_first(iksel::lanes::choose_kernels(), joints, q.data(), n, 20);
     ASSERT_EQ(chosen.size(), std::min<std::size_t>(20, n));
     EXPECT_EQ(chosen.front(), 0U);
     EXPECT_EQ(std::set<std::size_t>(chosen.begin(), chosen.end()).size(), chosen.size());

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many threads on one solver give bit for bit what one gives. Built with the thread sanitizer too.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <fstream>
 #include <iksel/iksel.hpp>
 #include <numeric>
 #include <random>
@@ -11,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "robots.hpp"
 
 namespace {
@@ -201,5 +206,34 @@ TEST(Threads, KinematicsOfOneRobotAreShared) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(wrong.load(), 0);
 }
+
+// Sanitizers reserve address space themselves.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+/// Ends with 0 if all is done where there is no room for the stacks of many threads.
+[[noreturn]] void work_with_few_threads() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t most = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (1U << 26U);
+  const rlimit limit{most, most};
+  ::setrlimit(RLIMIT_AS, &limit);
+  std::atomic<int> done{0};
+  std::atomic<int> workers{0};
+  iksel::parallel_for(400, 1, 200, [&] {
+    ++workers;
+    return [&](std::size_t, std::size_t) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      ++done;
+    };
+  });
+  std::exit(done == 400 && workers < 200 ? 0 : 1);
+}
+
+TEST(Threads, FewerThanWereAskedForDoAll) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(work_with_few_threads(), testing::ExitedWithCode(0), "");
+}
+
+#endif
 
 }  // namespace

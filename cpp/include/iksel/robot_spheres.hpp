@@ -25,8 +25,8 @@ struct IKSEL_EXPORT RobotSpheres {
   /// Pairs of links that are looked at for collisions with each other.
   std::vector<std::pair<std::string, std::string>> pairs;
 
-  /// Throws InvalidArgumentError about a sphere that is not finite or whose radius is not above 0,
-  /// and a pair of one link or of a link without spheres.
+  /// Throws InvalidArgumentError about a sphere that is not finite, beyond kMaxCoordinate or whose
+  /// radius is not above 0, and a pair of one link or of a link without spheres.
   void validate() const;
 };
 

@@ -49,7 +49,8 @@ struct IKSEL_EXPORT Obstacle {
   static Obstacle point_cloud(PointCloud points, double radius, const Pose& T_base_obstacle,
                               double margin = 0);
 
-  /// Throws InvalidArgumentError naming the first number that is no good.
+  /// Throws InvalidArgumentError naming the first number that is no good: not finite, beyond
+  /// kMaxCoordinate, or a length below what it may be.
   void validate() const;
 };
 
@@ -101,7 +102,8 @@ class IKSEL_EXPORT Scene {
   /// Adds an obstacle, or replaces the one of that name. Throws InvalidArgumentError about a number
   /// that is no good or a name that a link or an attached object has.
   void set(const std::string& name, const Obstacle& obstacle);
-  /// Throws UnknownNameError, and InvalidArgumentError if the pose is not rigid.
+  /// Throws UnknownNameError, and InvalidArgumentError if the pose is not rigid or beyond
+  /// kMaxCoordinate.
   void move(const std::string& name, const Pose& T_base_obstacle);
   /// Adds an object that a link carries, or replaces the one of that name. Throws
   /// InvalidArgumentError as `set`, UnknownNameError about a link or what it may touch.
@@ -111,8 +113,8 @@ class IKSEL_EXPORT Scene {
 
   /// Whether nothing touches at q. Throws InvalidArgumentError as Robot::fk.
   [[nodiscard]] bool is_free(const JointVector& q) const;
-  /// The same of `count` configurations, one after the other, in `free`. Does not check that q is
-  /// finite.
+  /// The same of `count` configurations, one after the other, in `free`; what is not finite is not
+  /// free.
   void find_free(const double* q, std::size_t count, bool* free) const;
   /// What touches at q, the deepest first: of each link and each thing that it touches, where they
   /// overlap most. Throws as is_free.

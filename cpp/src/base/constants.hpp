@@ -9,6 +9,8 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 2.0 * kPi;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
+inline constexpr int kMaxMovingJoints = 64;
 /// Joints that a pose fixes.
 inline constexpr int kPoseJoints = 6;
 /// Joints of an arm whose solutions of a pose are a curve: one more than the pose fixes.

@@ -60,7 +60,11 @@ void parallel_for(std::size_t count, std::size_t chunk, int threads, const MakeW
       std::max<std::size_t>(1, std::min(static_cast<std::size_t>(threads), chunks));
   std::vector<std::thread> pool;
   pool.reserve(workers - 1);
-  for (std::size_t i = 1; i < workers; ++i) pool.emplace_back(run, false);
+  try {
+    for (std::size_t i = 1; i < workers; ++i) pool.emplace_back(run, false);
+  } catch (const std::exception&) {
+    // The system gives no more threads: those that there are do all.
+  }
   run(true);
   for (std::thread& thread : pool) thread.join();
   if (failure) std::rethrow_exception(failure);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/pose.hpp"
 
@@ -29,8 +30,7 @@ double deviation_of(const Eigen::Matrix3d& R) {
   const double yy = gram(1, 1);
   const double zz = gram(2, 2);
   // Squares that overflow make the other elements NaN.
-  constexpr double kHuge = 1e100;
-  if (!(xx + yy + zz < kHuge)) return std::numeric_limits<double>::infinity();
+  if (!(xx + yy + zz < kInfinity)) return kInfinity;
   const double along = std::max({std::abs(xx - 1), std::abs(yy - 1), std::abs(zz - 1)});
   return std::max({along, std::abs(gram(0, 1)), std::abs(gram(0, 2)), std::abs(gram(1, 2))});
 }
@@ -42,7 +42,7 @@ double rigid_deviation(const Pose& pose) {
   const Eigen::Vector3d p = pose.translation();
   const bool is_finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   if (!is_finite || !is_affine(pose) || R.determinant() < 0) {
-    return std::numeric_limits<double>::infinity();
+    return kInfinity;
   }
   return deviation_of(R);
 }

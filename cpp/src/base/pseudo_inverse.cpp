@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/symmetric.hpp"
+
 namespace iksel {
 namespace {
 
@@ -99,35 +101,6 @@ JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& 
   return J.transpose() * solve_symmetric(A, e);
 }
 
-double determinant(double (&rows)[6][6]) {
-  double* row[6];
-  for (int k = 0; k < 6; ++k) row[k] = rows[k];
-  double product = 1;
-#pragma GCC unroll 6
-  for (int k = 0; k < 6; ++k) {
-    int largest = k;
-#pragma GCC unroll 6
-    for (int r = k + 1; r < 6; ++r) {
-      if (std::abs(row[r][k]) > std::abs(row[largest][k])) largest = r;
-    }
-    if (largest != k) {
-      std::swap(row[k], row[largest]);
-      product = -product;
-    }
-    const double pivot = row[k][k];
-    product *= pivot;
-    if (product == 0) return 0;
-    const double inverse = 1 / pivot;
-#pragma GCC unroll 6
-    for (int r = k + 1; r < 6; ++r) {
-      const double factor = row[r][k] * inverse;
-#pragma GCC unroll 6
-      for (int i = k + 1; i < 6; ++i) row[r][i] -= factor * row[k][i];
-    }
-  }
-  return product;
-}
-
 Matrix6 inverse_of(const Matrix6& A) {
   // Gauss and Jordan, in place: where a column of A has gone, one of the inverse is.
   double row[6][6];
@@ -179,7 +152,7 @@ bool is_almost_singular(const JacobianMatrix& J) {
     }
   }
   // Written so that NaN is singular.
-  return !(determinant(rows) > kVolume * kVolume);
+  return !(SymmetricFactors<double>(rows, 0.0).determinant() > kVolume * kVolume);
 }
 
 }  // namespace iksel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Truncated and damped solves with a Jacobian, and determinants, without a heap allocation. Eigen's
+// Truncated and damped solves with a Jacobian, without a heap allocation. Eigen's
 // decompositions take a compiler long, and so are seen by one source only.
 #pragma once
 
@@ -46,10 +46,6 @@ PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda);
 
 /// J^T (J J^T + lambda I)^-1 e.
 JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& e);
-
-/// The determinant of a matrix of `rows`, which become its factors: by elimination, the largest of
-/// a column first. Everything is unrolled.
-double determinant(double (&rows)[6][6]);
 
 /// A^-1, by elimination, the largest of a column first. Not finite where A is singular.
 Matrix6 inverse_of(const Matrix6& A);

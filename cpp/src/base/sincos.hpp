@@ -30,7 +30,7 @@ inline T nearest_integer(const T& x) {
   return (x + magic) - magic;
 }
 
-/// Largest angle that sincos() is good for [rad].
+/// Up to this angle sincos() is used [rad]; it is good for larger ones, to 1e8 or so.
 inline constexpr double kSincosRange = 1e6;
 
 /// Single-precision sine and cosine to about 1e-7, of angles up to a few thousand: as sincos().

@@ -50,6 +50,13 @@ class SymmetricFactors {
     }
   }
 
+  /// Of A + lambda I; of a singular one next to nothing, or NaN.
+  [[nodiscard]] T determinant() const {
+    T product(1.0);
+    for (const T& each : inverse_) product = product / each;
+    return product;
+  }
+
  private:
   T (&L_)[6][6];
   T inverse_[6];

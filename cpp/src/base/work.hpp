@@ -64,8 +64,8 @@ class Work {
 /// A wall-clock deadline; asks the clock only if there is one.
 class Deadline {
  public:
-  /// Longer than a year is none: the clock's numbers end somewhere.
-  explicit Deadline(double seconds) : set_(seconds < 3e7) {
+  /// A year or longer is none: the clock's numbers end somewhere.
+  explicit Deadline(double seconds) : set_(seconds < 3.15e7) {
     if (set_) {
       end_ = Clock::now() +
              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));

@@ -31,8 +31,6 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
   seeds.n = chain.n;
   seeds.left = reduction.left;
   seeds.right = reduction.right;
-  seeds.longest_step = 1.0F;
-  seeds.outside_weight = 1000.0F;
   seeds.weight2 = static_cast<float>(reduction.weight * reduction.weight);
   seeds.offset_first = static_cast<float>(chain.joint[0].offset);
   seeds.offset_last = static_cast<float>(chain.joint[chain.joints - 1].offset);
@@ -48,11 +46,8 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
 
 lanes::SeedTarget make_seed_target(const Pose& Y) {
   lanes::SeedTarget target{};
-  for (int i = 0; i < 3; ++i) {
-    target.p[i] = static_cast<float>(Y(i, 3));
-    target.x[i] = static_cast<float>(Y(i, 0));
-    target.y[i] = static_cast<float>(Y(i, 1));
-    target.z[i] = static_cast<float>(Y(i, 2));
+  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
+    target.target[row] = static_cast<float>(full_pose_row(Y, row));
   }
   return target;
 }

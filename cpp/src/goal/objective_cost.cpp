@@ -7,7 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
-#include "base/pseudo_inverse.hpp"
+#include "base/symmetric.hpp"
 #include "goal/joint_move.hpp"
 #include "iksel/error.hpp"
 
@@ -35,7 +35,8 @@ double manipulability(const RobotModel& model, const JointVector& q) {
       }
     }
   }
-  return std::sqrt(std::max(determinant(gram), 0.0));
+  const double square = SymmetricFactors<double>(gram, 0.0).determinant();
+  return square > 0 ? std::sqrt(square) : 0;
 }
 
 double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,

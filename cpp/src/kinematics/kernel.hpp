@@ -14,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "base/motion_curve.hpp"
 #include "base/sincos.hpp"
 
@@ -50,9 +51,6 @@ inline void safe_sincos(double angle, double& sine, double& cosine) {
     cosine = std::cos(angle);
   }
 }
-
-/// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
-inline constexpr int kMaxMovingJoints = 64;
 
 /// z axes and origins of the joint frames, as the Jacobian needs them.
 struct JointAxes {

@@ -39,7 +39,6 @@ LaneRefiner::LaneRefiner(const ChainModel& model, const SolverOptions& options,
       base_inverse_(to_pose(model.kernel.base).inverse()),
       tip_(to_pose(model.kernel.tip)),
       per_metre_(1 / model.unit),
-      units_(model, model.unit),
       chain_(make_lane_chain(model, model.unit)),
       options_(make_lane_options(model, options)),
       task_options_(options_),
@@ -107,8 +106,8 @@ void LaneRefiner::set_task(int lane, const Pose& T_base_tcp) {
 void LaneRefiner::load_seed(int lane, const double* q) {
   load(lane, [&](int j) {
     const lanes::LaneVariable& variable = chain_.variable[j];
-    return variable.limited ? std::min(std::max(q[j], units_.from_lane(j, variable.lower)),
-                                       units_.from_lane(j, variable.upper))
+    return variable.limited ? std::min(std::max(q[j], chain_.from_lane(j, variable.lower)),
+                                       chain_.from_lane(j, variable.upper))
                             : q[j];
   });
 }
@@ -118,7 +117,7 @@ void LaneRefiner::hold_sums(int lane) {
   if (joints_.contains_sums(seed.data())) return;
   joints_.wrap(seed.data());
   seed = joints_.clamp(seed);
-  for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = units_.to_lane(j, seed[j]);
+  for (int j = 0; j < chain_.n; ++j) pack_.q[j][lane] = chain_.to_lane(j, seed[j]);
 }
 
 int LaneRefiner::advance(unsigned busy) {

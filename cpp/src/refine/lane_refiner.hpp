@@ -49,7 +49,7 @@ class LaneRefiner {
   template <typename Value>
   void load(int lane, const Value& value) {
     for (int j = 0; j < chain_.n; ++j) {
-      pack_.q[j][lane] = units_.to_lane(j, value(j));
+      pack_.q[j][lane] = chain_.to_lane(j, value(j));
     }
     if (chain_.sums > 0) hold_sums(lane);
     there_ &= ~(1U << static_cast<unsigned>(lane));  // of a search that ended before advance()
@@ -99,11 +99,11 @@ class LaneRefiner {
   /// The joint values of a lane.
   struct Column {
     const double (&rows)[lanes::kMaxJoints][lanes::kWidth];
-    const JointUnits& units;
+    const lanes::LaneChain& chain;
     int lane;
-    double operator[](int joint) const { return units.from_lane(joint, rows[joint][lane]); }
+    double operator[](int joint) const { return chain.from_lane(joint, rows[joint][lane]); }
   };
-  [[nodiscard]] Column at(int lane) const { return {pack_.q, units_, lane}; }
+  [[nodiscard]] Column at(int lane) const { return {pack_.q, chain_, lane}; }
   [[nodiscard]] JointVector q(int lane) const {
     JointVector q(chain_.n);
     for (int j = 0; j < chain_.n; ++j) q[j] = at(lane)[j];
@@ -126,7 +126,6 @@ class LaneRefiner {
   const JointSpace& joints_;
   Pose base_inverse_, tip_;  ///< of the kernel chain; the tip is the TCP
   double per_metre_;         ///< of the unit of all lengths that lanes work on
-  JointUnits units_;
   lanes::LaneChain chain_;
   lanes::LaneOptions options_, task_options_;
   const TaskSpace* task_ = nullptr;  ///< null: full poses

@@ -43,7 +43,10 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
                          [&](const LinkPoses& links) { make_bodies(robot, links); });
   tip_body_ = place_of(robot.tip_links().front()).body;
   T_body_tip_ = place_of(robot.tip_links().front()).T_body_link;
-  for (const auto& [name, of_link] : spheres.links) check_link(name, "spheres");
+  for (const auto& [name, of_link] : spheres.links) {
+    if (std::find(link_names_.begin(), link_names_.end(), name) != link_names_.end()) continue;
+    throw_unknown_name("spheres: the URDF has no link '" + name + "'", name, link_names_);
+  }
   // What is on one body stands together: the kernel places it in lanes.
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     for (const auto& [name, of_link] : spheres.links) {
@@ -106,11 +109,11 @@ void ArmShape::add(const std::string& name, const Place& place,
   std::vector<Sphere> placed = spheres;
   for (Sphere& sphere : placed) sphere.centre = place.T_body_link * sphere.centre;
   names_.push_back(name);
-  table_.add(place.body, std::move(placed));
+  table_.add(place.body, placed);
+  spheres_.push_back(std::move(placed));
 }
 
 void ArmShape::attach(const std::string& name, const AttachedObject& object) {
-  check_link(object.link, "link");
   add(name, place_of(object.link), object.spheres);
   const int added = static_cast<int>(links().size()) - 1;
   for (int i = 0; i < added; ++i) {
@@ -119,12 +122,6 @@ void ArmShape::attach(const std::string& name, const AttachedObject& object) {
                      object.may_touch.end();
     if (!may && links()[k].body != links().back().body) pairs_.add({i, added});
   }
-}
-
-void ArmShape::check_link(const std::string& link, const char* argument) const {
-  if (std::find(link_names_.begin(), link_names_.end(), link) != link_names_.end()) return;
-  throw_unknown_name(std::string(argument) + ": the URDF has no link '" + link + "'", link,
-                     link_names_);
 }
 
 const ArmShape::Place& ArmShape::place_of(const std::string& link) const {
@@ -137,27 +134,18 @@ int ArmShape::find(const std::string& name) const {
   return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
 }
 
-std::vector<Eigen::Vector3d> ArmShape::centres(const double* q) const {
-  std::vector<Pose> frame{Pose::Identity()};
-  for (std::size_t i = 1; i < bodies_.size(); ++i) {
-    const lanes::SceneBody& body = bodies_[i];
-    const double motion = motion_of(body, q[body.variable]);
-    Pose moved = frame_of(body);
-    if (body.prismatic) {
-      moved.translate(motion * Eigen::Vector3d::UnitZ());
-    } else {
-      moved.rotate(Eigen::AngleAxisd(motion, Eigen::Vector3d::UnitZ()));
-    }
-    frame.push_back(frame[static_cast<std::size_t>(body.parent)] * moved);
+std::vector<std::vector<Sphere>> ArmShape::spheres_at(const std::vector<Pose>& T_base_link) const {
+  std::vector<Pose> frame(bodies_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Place& place = places_[i];
+    frame[static_cast<std::size_t>(place.body)] = T_base_link[i] * place.T_body_link.inverse();
   }
-  std::vector<Eigen::Vector3d> centres(balls().size());
-  for (const lanes::SceneLink& link : links()) {
-    for (int b = link.first; b < link.first + link.count; ++b) {
-      const auto k = static_cast<std::size_t>(b);
-      centres[k] = frame[static_cast<std::size_t>(link.body)] * to_vector(balls()[k].centre);
-    }
+  std::vector<std::vector<Sphere>> placed = spheres_;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const Pose& body = frame[static_cast<std::size_t>(links()[i].body)];
+    for (Sphere& sphere : placed[i]) sphere.centre = body * sphere.centre;
   }
-  return centres;
+  return placed;
 }
 
 void ArmShape::show(lanes::SceneView& view) const {

@@ -28,17 +28,16 @@ class ArmShape {
   ArmShape(const Robot& robot, const RobotSpheres& spheres,
            const std::map<std::string, double>& other_joints);
 
-  /// Adds an object, which touches all links and objects but those named and those that move with
-  /// it. Throws UnknownNameError.
+  /// Adds an object of a link that there is; it touches all links and objects but those named and
+  /// those that move with it.
   void attach(const std::string& name, const AttachedObject& object);
-  /// Throws UnknownNameError about a link that the URDF lacks.
-  void check_link(const std::string& link, const char* argument) const;
 
   /// Sets what of a view belongs to the arm; it holds as long as this is not changed.
   void show(lanes::SceneView& view) const;
 
-  /// Centres of the balls in the base frame [m].
-  [[nodiscard]] std::vector<Eigen::Vector3d> centres(const double* q) const;
+  /// Spheres of each link or object in the base frame, where the URDF's links are.
+  [[nodiscard]] std::vector<std::vector<Sphere>> spheres_at(
+      const std::vector<Pose>& T_base_link) const;
 
   /// The body that the tip link is on, and T_tip_body.
   [[nodiscard]] int tip_body() const { return tip_body_; }
@@ -47,9 +46,11 @@ class ArmShape {
   /// Of each of the table's links, the name of the link or object.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const std::vector<lanes::SceneBody>& bodies() const { return bodies_; }
-  [[nodiscard]] const BallTable& table() const { return table_; }
+  /// Spheres of the table's links, in their bodies' frames.
+  [[nodiscard]] const std::vector<Sphere>& spheres(std::size_t link) const {
+    return spheres_[link];
+  }
   [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return table_.links(); }
-  [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return table_.balls(); }
   [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return pairs_.pairs(); }
 
  private:
@@ -74,6 +75,7 @@ class ArmShape {
   std::vector<lanes::SceneBody> bodies_;
   std::vector<std::shared_ptr<const MotionCurve>> curves_;  ///< of the bodies
   std::vector<std::string> names_;
+  std::vector<std::vector<Sphere>> spheres_;
   BallTable table_;
   PairTable pairs_;
 };

@@ -4,15 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "scene/bounding_ball.hpp"
-
 namespace iksel {
 namespace {
 
 using Spheres = std::vector<Sphere>;
-
-/// Balls of a leaf, at most, and about as many nodes below a node.
-constexpr int kFan = lanes::kWidth;
 
 lanes::SceneBall to_ball(const Sphere& sphere) {
   lanes::SceneBall ball{{}, sphere.radius};
@@ -20,10 +15,35 @@ lanes::SceneBall to_ball(const Sphere& sphere) {
   return ball;
 }
 
+/// A ball around the spheres, of which there is one at least: close to the smallest (steps towards
+/// the farthest, ever smaller: Badoiu and Clarkson, "Smaller core-sets for balls", 2003).
+Sphere ball_around(const Spheres& spheres) {
+  if (spheres.size() == 1) return spheres.front();
+  const auto reach = [](const Eigen::Vector3d& from, const Sphere& to) {
+    return (to.centre - from).norm() + to.radius;
+  };
+  Sphere ball{spheres.front().centre, 0};
+  const auto farthest = [&] {
+    return *std::max_element(spheres.begin(), spheres.end(), [&](const auto& a, const auto& b) {
+      return reach(ball.centre, a) < reach(ball.centre, b);
+    });
+  };
+  for (int i = 1; i <= 200; ++i) {
+    const Sphere far = farthest();
+    const Eigen::Vector3d way = far.centre - ball.centre;
+    const double distance = way.norm();
+    // Towards the point of that sphere that is farthest away.
+    if (distance > 0) ball.centre += way * ((1 + far.radius / distance) / (i + 1));
+  }
+  // Rounding included.
+  ball.radius = reach(ball.centre, farthest()) * (1 + 1e-12);
+  return ball;
+}
+
 /// Orders spheres `first` to `last - 1` into parts that lie close together, by halves across the
 /// longest extent; `ends` gets where each part ends.
 void part(Spheres& spheres, int first, int last, int parts, std::vector<int>& ends) {
-  if (parts == 1 || last - first <= kFan) {
+  if (parts == 1 || last - first <= lanes::kWidth) {
     ends.push_back(last);
     return;
   }
@@ -48,11 +68,11 @@ void part(Spheres& spheres, int first, int last, int parts, std::vector<int>& en
 
 void BallTable::fill(int node, Spheres& spheres, int first, int last) {
   std::vector<int> ends;
-  const bool is_leaf = last - first <= kFan;
+  const bool is_leaf = last - first <= lanes::kWidth;
   if (is_leaf) {
     for (int i = first; i < last; ++i) ends.push_back(i + 1);
   } else {
-    part(spheres, first, last, kFan, ends);
+    part(spheres, first, last, lanes::kWidth, ends);
   }
   const auto count = static_cast<int>(ends.size());
   const int below = is_leaf ? first : static_cast<int>(nodes_.size());
@@ -75,12 +95,9 @@ void BallTable::fill(int node, Spheres& spheres, int first, int last) {
 int BallTable::add(int body, Spheres spheres) {
   const std::size_t root = nodes_.size();
   nodes_.emplace_back();
-  const auto count = static_cast<int>(spheres.size());
   const lanes::SceneBall around = to_ball(ball_around(spheres));
-  fill(static_cast<int>(root), spheres, 0, count);
-  const int first = static_cast<int>(balls_.size());
-  for (const Sphere& sphere : spheres) balls_.push_back(to_ball(sphere));
-  links_.push_back({body, first, count, static_cast<int>(root), around});
+  fill(static_cast<int>(root), spheres, 0, static_cast<int>(spheres.size()));
+  links_.push_back({body, static_cast<int>(root), around});
   const std::size_t link = links_.size() - 1;
   if (runs_.empty() || runs_.back().body != body)
     runs_.push_back({body, static_cast<int>(link), 0});
@@ -90,15 +107,6 @@ int BallTable::add(int body, Spheres spheres) {
     around_[i][link] = i < 3 ? around.centre[i] : around.radius;
   }
   return static_cast<int>(link);
-}
-
-Spheres BallTable::spheres_of(const lanes::SceneLink& link) const {
-  Spheres spheres;
-  for (int b = link.first; b < link.first + link.count; ++b) {
-    const lanes::SceneBall& ball = balls_[static_cast<std::size_t>(b)];
-    spheres.push_back({to_vector(ball.centre), ball.radius});
-  }
-  return spheres;
 }
 
 void BallTable::show(lanes::SceneView& view) const {

@@ -20,10 +20,6 @@ class BallTable {
   void show(lanes::SceneView& view) const;
 
   [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return links_; }
-  /// Those of the links, not those around others.
-  [[nodiscard]] const std::vector<lanes::SceneBall>& balls() const { return balls_; }
-  /// The spheres of a link.
-  [[nodiscard]] std::vector<Sphere> spheres_of(const lanes::SceneLink& link) const;
 
  private:
   /// Fills a node, and adds those below it, for spheres `first` to `last - 1` of a link, which it
@@ -34,7 +30,6 @@ class BallTable {
   std::vector<lanes::SceneLinkRun> runs_;
   std::array<std::vector<double>, 4> around_;  ///< as SceneView has it
   std::vector<lanes::SceneNode> nodes_;
-  std::vector<lanes::SceneBall> balls_;
 };
 
 }  // namespace iksel

@@ -36,19 +36,17 @@ Pose frame_of(const lanes::SceneRoom& room, int body) {
   return Pose(Eigen::Map<const Eigen::Matrix4d>(room.frame + lanes::kFrameNumbers * body));
 }
 
-/// Whether a ball below a node touches; `found` is then it. `may` tells it of balls around others.
-template <class May, class Touches>
-bool find_touching(const lanes::SceneView& view, int at, const May& may, const Touches& touches,
+/// Whether a ball below a node touches; `found` is then it. `touches` is asked of balls around
+/// others, too.
+template <class Touches>
+bool find_touching(const lanes::SceneView& view, int at, const Touches& touches,
                    lanes::SceneBall& found) {
   const lanes::SceneNode& node = view.node[at];
   for (int k = 0; k < node.count; ++k) {
     const lanes::SceneBall ball{{node.x[k], node.y[k], node.z[k]}, node.radius[k]};
-    if (node.is_leaf) {
-      if (!touches(ball)) continue;
-      found = ball;
-      return true;
-    }
-    if (may(ball) && find_touching(view, node.first + k, may, touches, found)) return true;
+    if (!touches(ball, node.is_leaf)) continue;
+    found = ball;
+    if (node.is_leaf || find_touching(view, node.first + k, touches, found)) return true;
   }
   return false;
 }
@@ -77,42 +75,28 @@ void Scene::Data::find_free(const double* q, std::size_t count, bool* free) cons
 double Scene::Data::clearance_of_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
                                         SceneLook& look) const {
   double clearance = kInfinity;
-  const auto centre = [](const Pose& T_cloud_body, const lanes::SceneBall& ball) {
-    return Eigen::Vector3d(T_cloud_body * to_vector(ball.centre));
+  // Whether a ball of a link touches a cloud's points, or one around its balls may.
+  const auto test_of = [&](const Cloud& cloud, int link) {
+    const Pose T_cloud_body = Pose(cloud.T_cloud_base) * frame_of(room, view.link[link].body);
+    return [&, T_cloud_body](const lanes::SceneBall& ball, bool is_own) {
+      const Eigen::Vector3d centre = T_cloud_body * to_vector(ball.centre);
+      const double reach = ball.radius - view.smaller + cloud.radius;
+      return is_own ? cloud.grid->touches(centre, reach, clearance)
+                    : cloud.grid->may_touch(centre, reach);
+    };
   };
-  const auto reach = [&](const Cloud& cloud, const lanes::SceneBall& ball) {
-    return ball.radius - view.smaller + cloud.radius;
-  };
-  const auto touches = [&](const Cloud& cloud, const Pose& T_cloud_body,
-                           const lanes::SceneBall& ball) {
-    return cloud.grid->touches(centre(T_cloud_body, ball), reach(cloud, ball), clearance);
-  };
-  const auto may_touch = [&](const Cloud& cloud, const Pose& T_cloud_body,
-                             const lanes::SceneBall& ball) {
-    return cloud.grid->may_touch(centre(T_cloud_body, ball), reach(cloud, ball));
-  };
-  const auto place = [&](const Cloud& cloud, int link) {
-    return Pose(cloud.T_cloud_base) * frame_of(room, view.link[link].body);
-  };
-  if (look.ball && look.cloud < clouds_.size()) {
-    const Cloud& cloud = clouds_[look.cloud];
-    if (touches(cloud, place(cloud, look.link), *look.ball)) return clearance;
+  if (look.ball && look.cloud < clouds_.size() &&
+      test_of(clouds_[look.cloud], look.link)(*look.ball, /*is_own=*/true)) {
+    return clearance;
   }
   for (std::size_t c = 0; c < clouds_.size(); ++c) {
-    const Cloud& cloud = clouds_[c];
     for (int i = 0; i < view.links; ++i) {
       const lanes::SceneLink& link = view.link[i];
       if (link.body == 0 || link.body == view.cleared) continue;
-      const Pose T_cloud_body = place(cloud, i);
-      const auto may = [&](const lanes::SceneBall& ball) {
-        return may_touch(cloud, T_cloud_body, ball);
-      };
+      const auto touches = test_of(clouds_[c], i);
       lanes::SceneBall found{};
-      if (!may(link.around) ||
-          !find_touching(
-              view, link.root, may,
-              [&](const lanes::SceneBall& ball) { return touches(cloud, T_cloud_body, ball); },
-              found)) {
+      if (!touches(link.around, /*is_own=*/false) ||
+          !find_touching(view, link.root, touches, found)) {
         continue;
       }
       look.cloud = c;

@@ -43,54 +43,43 @@ double signed_distance(const Obstacle& obstacle, const PointGrid* grid,
 
 }  // namespace
 
-void Scene::Data::add_contacts(int link, const std::vector<Eigen::Vector3d>& centre,
+void Scene::Data::add_contacts(std::size_t link, const std::vector<Sphere>& placed,
                                std::vector<Contact>& found) const {
-  const auto radius = [&](int b) { return arm_.balls()[static_cast<std::size_t>(b)].radius; };
-  const auto at = [&](int b) { return centre[static_cast<std::size_t>(b)]; };
-  const lanes::SceneLink& of = arm_.links()[static_cast<std::size_t>(link)];
   for (const auto& [name, obstacle] : obstacles) {
     const auto grid = grids_.find(obstacle.points);
     const PointGrid* points = grid == grids_.end() ? nullptr : grid->second.get();
     double depth = -kInfinity;
-    for (int b = of.first; b < of.first + of.count; ++b) {
-      const double distance = signed_distance(obstacle, points, at(b));
-      depth = std::max(depth, radius(b) + obstacle.margin - distance);
+    for (const Sphere& sphere : placed) {
+      const double distance = signed_distance(obstacle, points, sphere.centre);
+      depth = std::max(depth, sphere.radius + obstacle.margin - distance);
     }
-    if (depth >= 0) {
-      found.push_back({arm_.names()[static_cast<std::size_t>(link)], name, true, depth});
-    }
+    if (depth >= 0) found.push_back({arm_.names()[link], name, true, depth});
   }
 }
 
-void Scene::Data::add_pair_contacts(const std::vector<Eigen::Vector3d>& centre,
+void Scene::Data::add_pair_contacts(const std::vector<std::vector<Sphere>>& placed,
                                     std::vector<Contact>& found) const {
-  const auto radius = [&](int b) { return arm_.balls()[static_cast<std::size_t>(b)].radius; };
-  const auto at = [&](int b) { return centre[static_cast<std::size_t>(b)]; };
   for (const lanes::ScenePair& pair : arm_.pairs()) {
-    const auto ia = static_cast<std::size_t>(pair.a);
-    const auto ib = static_cast<std::size_t>(pair.b);
-    const lanes::SceneLink& a = arm_.links()[ia];
-    const lanes::SceneLink& b = arm_.links()[ib];
+    const auto a = static_cast<std::size_t>(pair.a);
+    const auto b = static_cast<std::size_t>(pair.b);
     double depth = -kInfinity;
-    for (int i = a.first; i < a.first + a.count; ++i) {
-      for (int j = b.first; j < b.first + b.count; ++j) {
-        const double distance = (at(i) - at(j)).norm();
-        depth = std::max(depth, radius(i) + radius(j) - distance);
+    for (const Sphere& one : placed[a]) {
+      for (const Sphere& other : placed[b]) {
+        const double distance = (one.centre - other.centre).norm();
+        depth = std::max(depth, one.radius + other.radius - distance);
       }
     }
-    if (depth >= 0) found.push_back({arm_.names()[ia], arm_.names()[ib], false, depth});
+    if (depth >= 0) found.push_back({arm_.names()[a], arm_.names()[b], false, depth});
   }
 }
 
-std::vector<Contact> Scene::Data::contacts(const double* q) const {
-  const std::vector<Eigen::Vector3d> centre = arm_.centres(q);
+std::vector<Contact> Scene::Data::contacts(const JointVector& q) const {
+  const auto placed = arm_.spheres_at(robot.link_poses(q, other_joints));
   std::vector<Contact> found;
-  for (int link = 0; link < static_cast<int>(arm_.links().size()); ++link) {
-    if (arm_.links()[static_cast<std::size_t>(link)].body != 0) {
-      add_contacts(link, centre, found);
-    }
+  for (std::size_t link = 0; link < placed.size(); ++link) {
+    if (arm_.links()[link].body != 0) add_contacts(link, placed[link], found);
   }
-  add_pair_contacts(centre, found);
+  add_pair_contacts(placed, found);
   std::stable_sort(found.begin(), found.end(),
                    [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
   return found;

@@ -118,9 +118,8 @@ bool PointGrid::may_touch(const Eigen::Vector3d& c, double radius) const {
   if (outside > radius * radius) return false;
   const Cell cell = cell_of(c);
   // Cells are where rounding puts their points.
-  constexpr double kShortened = 1 - 1e-9;
   const double away2 = away2_[index(cell[0], cell[1], cell[2])] * edge_ * edge_;
-  return away2 * kShortened <= radius * radius;
+  return away2 * (1 - kSlack) <= radius * radius;
 }
 
 bool PointGrid::touches(const Eigen::Vector3d& c, double radius, double& clearance) const {

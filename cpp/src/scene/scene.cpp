@@ -14,22 +14,43 @@
 namespace iksel {
 namespace {
 
+double largest_of(const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff(); }
+
+/// Throws if a number of 0 or more is too large to compute with.
+void check_size(const std::string& name, double number) {
+  if (number <= kMaxCoordinate) return;
+  throw InvalidArgumentError(name + ": " + too_large_text(number, "m"));
+}
+
 void check_spheres(const std::string& name, const std::vector<Sphere>& spheres) {
   if (spheres.empty()) throw InvalidArgumentError("spheres: '" + name + "' has none");
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Sphere& sphere = spheres[i];
-    if (sphere.centre.allFinite() && sphere.radius > 0 && std::isfinite(sphere.radius)) continue;
-    throw InvalidArgumentError("spheres: number " + std::to_string(i) + " of '" + name +
-                               "' is not finite, or its radius is not above 0 (" +
+    const bool is_good =
+        sphere.centre.allFinite() && sphere.radius > 0 && std::isfinite(sphere.radius);
+    const double largest = std::max(largest_of(sphere.centre), sphere.radius);
+    if (is_good && largest <= kMaxCoordinate) continue;
+    const std::string which = "spheres: number " + std::to_string(i) + " of '" + name + "'";
+    if (is_good) check_size(which, largest);
+    throw InvalidArgumentError(which + " is not finite, or its radius is not above 0 (" +
                                number_text(sphere.radius) + " m)");
   }
 }
 
 /// Throws unless the number is finite and 0 or more, or above 0.
 void check_length(const char* name, double length, bool may_be_zero) {
-  if (std::isfinite(length) && (may_be_zero ? length >= 0 : length > 0)) return;
-  throw InvalidArgumentError(std::string(name) + ": " + number_text(length) + " m is not " +
-                             (may_be_zero ? "0 or more" : "above 0"));
+  if (!std::isfinite(length) || !(may_be_zero ? length >= 0 : length > 0)) {
+    throw InvalidArgumentError(std::string(name) + ": " + number_text(length) + " m is not " +
+                               (may_be_zero ? "0 or more" : "above 0"));
+  }
+  check_size(name, length);
+}
+
+/// As check_pose, and throws where the place is too far away.
+Pose check_place(const Pose& T_base_obstacle) {
+  const Pose pose = check_pose(T_base_obstacle);
+  check_size("pose", largest_of(pose.translation()));
+  return pose;
 }
 
 Obstacle make_obstacle(Obstacle::Shape shape, const Pose& pose, double margin) {
@@ -101,7 +122,7 @@ Obstacle Obstacle::point_cloud(PointCloud points, double radius, const Pose& T_b
 }
 
 void Obstacle::validate() const {
-  check_pose(Pose(pose));
+  check_place(Pose(pose));
   check_length("margin", margin, true);
   switch (shape) {
     case Shape::box:
@@ -119,6 +140,7 @@ void Obstacle::validate() const {
       check_length("radius", radius, true);
       if (!points || points->rows() == 0) throw InvalidArgumentError("points: there are none");
       if (!points->allFinite()) throw InvalidArgumentError("points: one is not finite");
+      check_size("points", points->cwiseAbs().maxCoeff());
       break;
     case Shape::half_space:
       break;
@@ -149,7 +171,7 @@ void Scene::set(const std::string& name, const Obstacle& obstacle) {
 }
 
 void Scene::move(const std::string& name, const Pose& T_base_obstacle) {
-  const Pose pose = check_pose(T_base_obstacle);
+  const Pose pose = check_place(T_base_obstacle);
   if (data_->obstacles.count(name) == 0) {
     throw_unknown_name("scene: no obstacle '" + name + "'", name, scene_names(*data_));
   }
@@ -193,7 +215,9 @@ void Scene::remove(const std::string& name) {
 
 bool Scene::is_free(const JointVector& q) const {
   check_joints(q, data_->robot.dof(), "q");
-  return data_->is_free(q.data());
+  bool free = false;
+  find_free(q.data(), 1, &free);
+  return free;
 }
 
 void Scene::find_free(const double* q, std::size_t count, bool* free) const {
@@ -202,7 +226,7 @@ void Scene::find_free(const double* q, std::size_t count, bool* free) const {
 
 std::vector<Contact> Scene::contacts(const JointVector& q) const {
   check_joints(q, data_->robot.dof(), "q");
-  return data_->contacts(q.data());
+  return data_->contacts(q);
 }
 
 void Scene::check_fits(const Robot& robot) const {

@@ -26,11 +26,14 @@ void Scene::Data::add(const Obstacle& obstacle) {
     case Obstacle::Shape::sphere:
     case Obstacle::Shape::box:
     case Obstacle::Shape::capsule: {
-      lanes::SceneBlock block{{}, {}, {}, obstacle.radius + obstacle.margin, 0};
+      const bool is_box = obstacle.shape == Obstacle::Shape::box;
+      const bool is_capsule = obstacle.shape == Obstacle::Shape::capsule;
+      lanes::SceneBlock block{{}, {}, {}, obstacle.margin, 0};
       copy_vector(pose.translation(), block.centre);
       for (int i = 0; i < 3; ++i) copy_vector(R.col(i), block.axis[i]);
-      copy_vector(0.5 * obstacle.size, block.half);
-      block.half[2] += 0.5 * obstacle.length;
+      if (is_box) copy_vector(0.5 * obstacle.size, block.half);
+      if (is_capsule) block.half[2] = 0.5 * obstacle.length;
+      if (!is_box) block.radius += obstacle.radius;
       // Rounding included.
       block.around =
           (Eigen::Map<const Eigen::Vector3d>(block.half).norm() + block.radius) * (1 + 1e-12);

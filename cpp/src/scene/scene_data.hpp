@@ -55,12 +55,7 @@ struct Scene::Data {
   [[nodiscard]] bool touches_at(const Pose& T_base_tip, double position, double rotation) const;
   /// Which of `count` configurations, one after the other, are free.
   void find_free(const double* q, std::size_t count, bool* free) const;
-  [[nodiscard]] bool is_free(const double* q) const {
-    bool free = false;
-    find_free(q, 1, &free);
-    return free;
-  }
-  [[nodiscard]] std::vector<Contact> contacts(const double* q) const;
+  [[nodiscard]] std::vector<Contact> contacts(const JointVector& q) const;
 
   Robot robot;
   RobotSpheres spheres;
@@ -82,9 +77,10 @@ struct Scene::Data {
   /// infinite where nothing touches one.
   double clearance_of_points(const lanes::SceneView& view, const lanes::SceneRoom& room,
                              SceneLook& look) const;
-  void add_contacts(int link, const std::vector<Eigen::Vector3d>& centre,
+  /// Of spheres in the base frame.
+  void add_contacts(std::size_t link, const std::vector<Sphere>& placed,
                     std::vector<Contact>& found) const;
-  void add_pair_contacts(const std::vector<Eigen::Vector3d>& centre,
+  void add_pair_contacts(const std::vector<std::vector<Sphere>>& placed,
                          std::vector<Contact>& found) const;
 
   ArmShape bare_;  ///< without what is attached

@@ -34,9 +34,8 @@ TargetShape::TargetShape(const ArmShape& arm)
   std::vector<int> from_base(count, -1);
   std::vector<int> from_tip(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
-    const lanes::SceneLink& link = arm.links()[i];
-    from_base[i] = add(seen_from_base(arm, link));
-    from_tip[i] = add(seen_from_tip(arm, link));
+    from_base[i] = add(seen_from_base(arm, i));
+    from_tip[i] = add(seen_from_tip(arm, i));
   }
   for (const lanes::ScenePair& pair : arm.pairs()) {
     const auto a = static_cast<std::size_t>(pair.a);
@@ -46,10 +45,10 @@ TargetShape::TargetShape(const ArmShape& arm)
   }
 }
 
-TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm,
-                                              const lanes::SceneLink& link) const {
-  Part part{0, arm.table().spheres_of(link)};
-  for (int b = link.body; b > 0; b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
+TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm, std::size_t link) const {
+  Part part{0, arm.spheres(link)};
+  for (int b = arm.links()[link].body; b > 0;
+       b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
     const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(b)];
     if (body.prismatic) return {};
     const Pose frame = frame_of(body);
@@ -62,11 +61,10 @@ TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm,
   return part;
 }
 
-TargetShape::Part TargetShape::seen_from_tip(const ArmShape& arm,
-                                             const lanes::SceneLink& link) const {
-  const auto at = std::find(to_tip_.begin(), to_tip_.end(), link.body);
+TargetShape::Part TargetShape::seen_from_tip(const ArmShape& arm, std::size_t link) const {
+  const auto at = std::find(to_tip_.begin(), to_tip_.end(), arm.links()[link].body);
   if (at == to_tip_.end()) return {};
-  Part part{1, arm.table().spheres_of(link)};
+  Part part{1, arm.spheres(link)};
   for (auto next = at; next != to_tip_.begin();) {
     const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(*--next)];
     if (body.prismatic) return {};

@@ -31,8 +31,8 @@ class TargetShape {
     int body;
     std::vector<Sphere> spheres;
   };
-  [[nodiscard]] Part seen_from_base(const ArmShape& arm, const lanes::SceneLink& link) const;
-  [[nodiscard]] Part seen_from_tip(const ArmShape& arm, const lanes::SceneLink& link) const;
+  [[nodiscard]] Part seen_from_base(const ArmShape& arm, std::size_t link) const;
+  [[nodiscard]] Part seen_from_tip(const ArmShape& arm, std::size_t link) const;
   /// Index of the new link; -1 if it has no balls.
   int add(Part part);
 

@@ -121,6 +121,9 @@ class WorkspacePool {
   WorkspacePool& operator=(const WorkspacePool&) = delete;
   ~WorkspacePool();
 
+  /// Of all its workspaces, whatever IKSEL_SIMD says when they are made.
+  [[nodiscard]] const lanes::LaneKernels& kernels() const { return kernels_; }
+
   /// Whether its workspaces solve in lanes.
   [[nodiscard]] bool solves_in_lanes() const { return solves_in_lanes_; }
 
@@ -147,7 +150,6 @@ class WorkspacePool {
  private:
   [[nodiscard]] std::unique_ptr<Workspace> make() const;
 
-  /// Of all its workspaces, whatever IKSEL_SIMD says when they are made.
   const lanes::LaneKernels& kernels_ = lanes::choose_kernels();
 
   void fill();

@@ -37,11 +37,10 @@ Vector6 squares(const Goal& goal, const Vector6& weights) {
 ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
                              const lanes::LaneKernels& kernels)
     : model_(model),
-      approach_(kernels.approach),
+      kernels_(kernels),
       base_inverse_(to_pose(model.kernel.base).inverse()),
       last_to_tcp_(to_pose(model.kernel.flange) * Pose(model.tcp)),
-      units_(model, length_),
-      chain_(make_rough_chain(model, length_)),
+      chain_(make_lane_chain<float>(model, length_)),
       seed_(seed) {
   const auto pack = static_cast<std::size_t>(model.dof * lanes::kBlock);
   random_.resize(kRandomPacks * pack);
@@ -67,8 +66,7 @@ void ClosestScreen::use_length(const Vector6& squares) {
   const double length = counts ? std::clamp(rotation / position, 1e-3, 1e3) : 1.0;
   if (length == length_) return;
   length_ = length;
-  units_ = JointUnits(model_, length);
-  chain_ = make_rough_chain(model_, length);
+  chain_ = make_lane_chain<float>(model_, length);
 }
 
 void ClosestScreen::add_target(const Pose& allowed, const Goal& goal, const Vector6& squares) {
@@ -107,7 +105,7 @@ int ClosestScreen::load_seeds(LaneQuery& query) {
       const float* from = values(j);
       float* to = row(packs_, packs, j);
       std::transform(from, from + lanes::kBlock, to,
-                     [&](float value) { return units_.to_lane(j, value); });
+                     [&](float value) { return chain_.to_lane(j, value); });
     }
     ++packs;
   };
@@ -126,8 +124,8 @@ void ClosestScreen::move(int packs, int iterations) {
   seeds_.resize(static_cast<std::size_t>(packs * lanes::kBlock));
   for (int pack = 0; pack < packs; ++pack) {
     float remainder[lanes::kBlock];
-    approach_(chain_, targets_[static_cast<std::size_t>(pack)], iterations, row(packs_, pack, 0),
-              remainder);
+    kernels_.approach(chain_, targets_[static_cast<std::size_t>(pack)], iterations,
+                      row(packs_, pack, 0), remainder);
     for (int place = 0; place < lanes::kBlock; ++place) {
       const int i = pack * lanes::kBlock + place;
       Seed& seed = seeds_[static_cast<std::size_t>(i)];
@@ -189,7 +187,7 @@ JointVector ClosestScreen::q(int i) const {
   JointVector q(chain_.n);
   for (int j = 0; j < chain_.n; ++j) {
     const float value = packs_[static_cast<std::size_t>(j * lanes::kBlock + i)];
-    q[j] = units_.from_lane(j, static_cast<double>(value));
+    q[j] = chain_.from_lane(j, static_cast<double>(value));
   }
   model_.joints.wrap(q.data());
   return model_.joints.clamp(q);

@@ -61,11 +61,10 @@ class ClosestScreen {
   }
 
   const ChainModel& model_;
-  lanes::Approach approach_;
+  const lanes::LaneKernels& kernels_;
   Pose base_inverse_, last_to_tcp_;
-  double length_ = 1;  ///< [m]
-  JointUnits units_;   ///< of length_
-  lanes::LaneChainOf<float> chain_;
+  double length_ = 1;                ///< [m]
+  lanes::LaneChainOf<float> chain_;  ///< in that unit
   std::uint64_t seed_;
   std::vector<float> random_;                                 ///< packs of joint values [rad or m]
   std::vector<float> packs_, kept_;                           ///< [rad or length_]

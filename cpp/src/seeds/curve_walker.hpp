@@ -10,7 +10,6 @@
 #include "base/function_ref.hpp"
 #include "iksel/self_motion.hpp"
 #include "kinematics/chain_model.hpp"
-#include "simd/curve_types.hpp"
 #include "simd/kernels.hpp"
 
 namespace iksel {

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "base/constants.hpp"
-#include "simd/kernels.hpp"
 
 namespace iksel {
 
-std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
-                                        std::size_t count, double least) {
+std::vector<std::size_t> farthest_first(const lanes::LaneKernels& kernels, const JointSpace& joints,
+                                        const double* q, std::size_t all, std::size_t count,
+                                        double least) {
   const auto dof = static_cast<std::size_t>(joints.dof());
   const std::size_t blocks = (all + lanes::kBlock - 1) / lanes::kBlock;
   // Whole turns are left out, which single precision would take for more than they are.
@@ -31,7 +31,6 @@ std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* 
     per_turn[j] = joints.is_periodic(j) ? static_cast<float>(1 / kTwoPi) : 0;
   }
   float from[lanes::kMaxJoints];
-  const lanes::LaneKernels& kernels = lanes::choose_kernels();
   std::vector<std::size_t> chosen;
   count = std::min(count, all);
   chosen.reserve(count);

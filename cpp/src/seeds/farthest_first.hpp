@@ -14,7 +14,8 @@ namespace iksel {
 /// farthest from those before, by the joint that moves most; `count` of them at most, and none
 /// nearer to another than `least`. In single precision: which of two that are equally far is taken
 /// matters little.
-std::vector<std::size_t> farthest_first(const JointSpace& joints, const double* q, std::size_t all,
-                                        std::size_t count, double least = 0);
+std::vector<std::size_t> farthest_first(const lanes::LaneKernels& kernels, const JointSpace& joints,
+                                        const double* q, std::size_t all, std::size_t count,
+                                        double least = 0);
 
 }  // namespace iksel

@@ -7,7 +7,6 @@
 
 #include "base/constants.hpp"
 #include "seeds/beyond_limits.hpp"
-#include "simd/residual_types.hpp"
 
 namespace iksel {
 namespace {

@@ -8,9 +8,8 @@ namespace iksel {
 SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
                        const lanes::LaneKernels& kernels)
     : per_metre_(1 / model.unit),
-      units_(model, model.unit),
-      chain_(make_rough_chain(model, model.unit)),
-      advance_(kernels.advance_roughly),
+      chain_(make_lane_chain<float>(model, model.unit)),
+      kernels_(kernels),
       iterations_(std::min(kIterations, options.max_iterations)) {
   options_.damping = std::get<Lanes>(options.strategy).damping;
   options_.least_damping = 1e-6;
@@ -24,12 +23,12 @@ void SeedScreen::begin(const Pose& Y) {
 }
 
 int SeedScreen::run(double (*rows)[lanes::kMaxJoints], std::size_t& count) {
-  if (iterations_ > 0) advance_(chain_, options_, iterations_, pack_);
+  if (iterations_ > 0) kernels_.advance_roughly(chain_, options_, iterations_, pack_);
   for (int place = 0; place < filled_; ++place) {
     if (iterations_ > 0 && !(pack_.error2[place] < kNear2)) continue;
     double* q = rows[count++];
     for (int j = 0; j < chain_.n; ++j) {
-      q[j] = units_.from_lane(j, static_cast<double>(pack_.q[j][place]));
+      q[j] = chain_.from_lane(j, static_cast<double>(pack_.q[j][place]));
     }
   }
   filled_ = 0;

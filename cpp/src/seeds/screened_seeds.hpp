@@ -30,7 +30,7 @@ class SeedScreen {
   template <typename Value>
   void add(const Value& value) {
     for (int j = 0; j < chain_.n; ++j) {
-      pack_.q[j][filled_] = units_.to_lane(j, static_cast<float>(value(j)));
+      pack_.q[j][filled_] = chain_.to_lane(j, static_cast<float>(value(j)));
     }
     ++filled_;
   }
@@ -44,10 +44,9 @@ class SeedScreen {
   static constexpr int kIterations = 7;
 
   double per_metre_;  ///< of the unit of all lengths that lanes work on
-  JointUnits units_;
   lanes::LaneChainOf<float> chain_;
   lanes::LaneOptions options_{};
-  lanes::AdvanceRoughly advance_;
+  const lanes::LaneKernels& kernels_;
   int iterations_;
   lanes::RoughPack pack_{};
   int filled_ = 0;

@@ -76,8 +76,8 @@ class Sweep::Spread {
 
   /// Keeps `count` that are far from each other, and no nearer than `least`.
   void thin_out(std::size_t count, double least) {
-    const std::vector<std::size_t> chosen =
-        farthest_first(joints_, q_.data(), q_.size() / kCurveJoints, count, least);
+    const std::vector<std::size_t> chosen = farthest_first(
+        sweep_.branches_.kernels(), joints_, q_.data(), q_.size() / kCurveJoints, count, least);
     std::vector<double> kept;
     kept.reserve(count * kCurveJoints);
     for (const std::size_t i : chosen) {

@@ -46,6 +46,7 @@ class SweptBranches {
   SweptBranches(const ChainModel& model, const ClosedFormChain& chain,
                 const lanes::LaneKernels& kernels);
 
+  [[nodiscard]] const lanes::LaneKernels& kernels() const { return kernels_; }
   /// The joint that is swept.
   [[nodiscard]] int joint() const { return chain_.held; }
   /// So many values of it: both ends of a range, but of a whole turn one is enough.

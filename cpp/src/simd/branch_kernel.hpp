@@ -211,20 +211,19 @@ template <typename T>
 /// limits; branches with the same arm, half a pack apart, share it where they are in other lanes.
 template <typename T, bool kOfOneTarget>
 void solve_closed(const ClosedForm& form, BranchPack& pack) {
-  constexpr int kCount = Lanes<T>::kCount;
-  constexpr int kHalf = kWidth / 2;
+  using L = Lanes<T>;
   if (form.closure == Closure::three_parallel) {
-    for (int first = 0; first < kWidth; first += kCount) {
+    for (int first = 0; first < kWidth; first += L::kCount) {
       solve_parallels<T>(form, kOfOneTarget, first, pack);
     }
     return;
   }
-  constexpr bool kShares = kOfOneTarget && kCount <= kHalf;
-  for (int first = 0; first < (kShares ? kHalf : kWidth); first += kCount) {
+  constexpr bool kShares = kOfOneTarget && L::kCount <= kWidth / 2;
+  for (int first = 0; first < (kShares ? kWidth / 2 : kWidth); first += L::kCount) {
     PlacedArm<T> arm{{{}, Certainty<T>(form.error, kOfOneTarget)}, {}};
     place_arm(form, first, pack, arm);
     finish_arm(form, arm, first, pack);
-    if (kShares) finish_arm(form, arm, first + kHalf, pack);
+    if (kShares) finish_arm(form, arm, first + kWidth / 2, pack);
   }
 }
 

@@ -165,8 +165,8 @@ IKSEL_INLINE void differentiate(const LaneChainOf<float>& chain, const ClosestTa
     slope[j] = scale[j] = T(0.0F);
     for (int i = 0; i <= j; ++i) H[j][i] = T(0.0F);
   }
-  Vec<T> moved[kMaxMoving];
-  Vec<T> turned[kMaxMoving];
+  Vec<T> moved[kMaxMovingJoints];
+  Vec<T> turned[kMaxMovingJoints];
 #pragma GCC unroll 8
   for (int k = 0; k < joints; ++k) {
     const JointEffect<T> effect = find_effect(chain.joint[k].prismatic, at, target, J[k]);
@@ -237,12 +237,12 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
     T best = T(1e30F);
     T damping = T(1e-2F);
     for (int iteration = 0;; ++iteration) {
-      T J[kMaxMoving][6];
+      T J[kMaxMovingJoints][6];
       LaneFrame<T> frame;
       if constexpr (!kFollow) {
         place_joints(chain, q, J, frame, n);
       } else {
-        T speed[kMaxMoving];
+        T speed[kMaxMovingJoints];
         place_following_joints(chain, q, J, speed, frame);
         for (int k = 0; k < chain.joints; ++k) {
           for (int i = 3; i < 6; ++i) J[k][i] = J[k][i] * speed[k];

@@ -9,26 +9,20 @@
 #pragma once
 
 #include "base/symmetric.hpp"
-#include "simd/curve_types.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_goal.hpp"
 #include "simd/lane_math.hpp"
 
 namespace iksel::lanes {
 
-/// Six columns of six rows each.
+/// Of six columns of six rows each, by the minors of the upper three rows and of the lower three
+/// (Laplace).
 template <typename T>
-struct SixColumns {
-  T of[6][6];
-};
-
-/// By the minors of the upper three rows and of the lower three (Laplace).
-template <typename T>
-IKSEL_INLINE T determinant(const SixColumns<T>& columns) {
+IKSEL_INLINE T determinant(const T (&columns)[6][6]) {
   const auto minor = [&](int a, int b, int c, int row) {
-    const T(&x)[6] = columns.of[a];
-    const T(&y)[6] = columns.of[b];
-    const T(&z)[6] = columns.of[c];
+    const T(&x)[6] = columns[a];
+    const T(&y)[6] = columns[b];
+    const T(&z)[6] = columns[c];
     return x[row] * (y[row + 1] * z[row + 2] - y[row + 2] * z[row + 1]) -
            y[row] * (x[row + 1] * z[row + 2] - x[row + 2] * z[row + 1]) +
            z[row] * (x[row + 1] * y[row + 2] - x[row + 2] * y[row + 1]);
@@ -103,9 +97,9 @@ void orient_curves(const LaneChain& chain, CurvePack& pack) {
     T n[kCurveJoints];
     T n2 = T(0.0);
     for (int m = 0; m < kCurveJoints; ++m) {
-      SixColumns<T> others;
+      T others[6][6];
       for (int k = 0; k < 6; ++k) {
-        for (int i = 0; i < 6; ++i) others.of[k][i] = at.J[k < m ? k : k + 1][i];
+        for (int i = 0; i < 6; ++i) others[k][i] = at.J[k < m ? k : k + 1][i];
       }
       n[m] = determinant(others);
       if (m % 2 == 1) n[m] = T(0.0) - n[m];
@@ -124,9 +118,9 @@ template <typename T>
 IKSEL_INLINE T orientation(const CurvePlace<T>& at, const T (&n)[kCurveJoints]) {
   // By the component that is largest.
   T largest = n[0];
-  SixColumns<T> others;
+  T others[6][6];
   for (int k = 0; k < 6; ++k) {
-    for (int i = 0; i < 6; ++i) others.of[k][i] = at.J[k + 1][i];
+    for (int i = 0; i < 6; ++i) others[k][i] = at.J[k + 1][i];
   }
   for (int m = 1; m < kCurveJoints; ++m) {
     const T signed_n = m % 2 == 1 ? T(0.0) - n[m] : n[m];
@@ -136,7 +130,7 @@ IKSEL_INLINE T orientation(const CurvePlace<T>& at, const T (&n)[kCurveJoints]) 
     for (int k = 0; k < 6; ++k) {
       const int from = k < m ? k : k + 1;
       for (int i = 0; i < 6; ++i) {
-        others.of[k][i] = select(is_larger, at.J[from][i], others.of[k][i]);
+        others[k][i] = select(is_larger, at.J[from][i], others[k][i]);
       }
     }
   }

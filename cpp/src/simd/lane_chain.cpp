@@ -5,8 +5,8 @@
 
 namespace iksel {
 
+static_assert(lanes::kMaxJoints == kMaxDof);
 static_assert(lanes::kMostSums == kMaxCoupledLimits);
-static_assert(lanes::kMaxMoving == kMaxMovingJoints);
 
 bool is_simple(const ChainModel& model) {
   if (model.kernel.joints.size() != static_cast<std::size_t>(model.dof)) return false;
@@ -17,13 +17,14 @@ bool is_simple(const ChainModel& model) {
   return true;
 }
 
-namespace {
-
 template <typename Number>
-lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
+lanes::LaneChainOf<Number> make_lane_chain(const ChainModel& model, double unit) {
   const auto number = [](double x) { return static_cast<Number>(x); };
-  const JointUnits units(model, unit);
   lanes::LaneChainOf<Number> chain{};
+  for (int j = 0; j < model.dof; ++j) {
+    chain.unit[j] = model.joints.is_slide(j) ? unit : 1;
+    chain.per_unit[j] = 1 / chain.unit[j];
+  }
   for (const KernelJoint& from : model.kernel.joints) {
     auto& to = chain.joint[chain.joints++];
     for (int i = 0; i < 3; ++i) to.p[i] = number(from.p[i] / unit);
@@ -33,7 +34,7 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     to.sin_turn = number(from.sin_turn);
     const double unit_of_motion = from.prismatic ? unit : 1;
     to.multiplier = number(from.multiplier / unit_of_motion);
-    to.unit = number(units.from_lane(from.variable, 1.0));
+    to.unit = number(chain.unit[from.variable]);
     to.offset = number(from.offset / unit_of_motion);
     to.curve = from.curve.get();
     to.variable = from.variable;
@@ -47,8 +48,8 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     // A principal angle just off its interval is still the same angle.
     const double lower = continuous ? -kPi - 1e-9 : model.joints.lower[j];
     const double upper = continuous ? kPi + 1e-9 : model.joints.upper[j];
-    to.lower = number(units.to_lane(j, lower));
-    to.upper = number(units.to_lane(j, upper));
+    to.lower = number(chain.to_lane(j, lower));
+    to.upper = number(chain.to_lane(j, upper));
     to.limited = !continuous && !model.joints.winds(j);
   }
   for (const Limit& from : model.joints.sums) {
@@ -57,7 +58,7 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
     lanes::LaneSumOf<Number>& to = chain.sum[chain.sums++];
     double norm2 = 0;
     for (int j = 0; j < chain.n; ++j) {
-      const double c = units.from_lane(j, from.c[j]);
+      const double c = chain.from_lane(j, from.c[j]);
       to.c[j] = number(c);
       norm2 += c * c;
     }
@@ -70,14 +71,7 @@ lanes::LaneChainOf<Number> make_chain(const ChainModel& model, double unit) {
   return chain;
 }
 
-}  // namespace
-
-lanes::LaneChain make_lane_chain(const ChainModel& model, double unit) {
-  return make_chain<double>(model, unit);
-}
-
-lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model, double unit) {
-  return make_chain<float>(model, unit);
-}
+template lanes::LaneChain make_lane_chain<double>(const ChainModel& model, double unit);
+template lanes::LaneChainOf<float> make_lane_chain<float>(const ChainModel& model, double unit);
 
 }  // namespace iksel

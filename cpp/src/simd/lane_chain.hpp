@@ -18,31 +18,7 @@ inline double full_pose_row(const Pose& Y, int row, double per_metre = 1) {
 bool is_simple(const ChainModel& model);
 
 /// The part between the frames of the first and the last joint, with lengths in that unit.
-lanes::LaneChain make_lane_chain(const ChainModel& model, double unit = 1);
-/// The same in single precision.
-lanes::LaneChainOf<float> make_rough_chain(const ChainModel& model, double unit = 1);
-
-/// Joint values in metres and radians to and from those of a lane chain in a unit.
-class JointUnits {
- public:
-  JointUnits(const ChainModel& model, double unit) {
-    for (int j = 0; j < model.dof; ++j) {
-      unit_[j] = model.joints.is_slide(j) ? unit : 1;
-      per_unit_[j] = 1 / unit_[j];
-    }
-  }
-  template <typename Number>
-  [[nodiscard]] Number to_lane(int joint, Number value) const {
-    return value * static_cast<Number>(per_unit_[joint]);
-  }
-  template <typename Number>
-  [[nodiscard]] Number from_lane(int joint, Number value) const {
-    return value * static_cast<Number>(unit_[joint]);
-  }
-
- private:
-  double unit_[lanes::kMaxJoints];
-  double per_unit_[lanes::kMaxJoints];
-};
+template <typename Number = double>
+lanes::LaneChainOf<Number> make_lane_chain(const ChainModel& model, double unit = 1);
 
 }  // namespace iksel

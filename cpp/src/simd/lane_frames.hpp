@@ -35,8 +35,8 @@ IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q
     f.p[i] = T(0.0);
   }
   // The joints' sines first: they do not depend on each other, and the frames need the registers.
-  T sine[kMaxMoving];
-  T cosine[kMaxMoving];
+  T sine[kMaxMovingJoints];
+  T cosine[kMaxMovingJoints];
   for (int j = 0; j < n; ++j) sincos(q[j] + T(chain.joint[j].offset), sine[j], cosine[j]);
 #pragma GCC unroll 10
   for (int j = 0; j < n; ++j) {
@@ -87,7 +87,7 @@ IKSEL_INLINE void make_twist(const Joint& joint, const T* point, T (&column)[6])
 template <typename T>
 [[gnu::noinline]] void place_following_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q,
                                               T (*J)[6], T* slope, LaneFrame<T>& f) {
-  T value[kMaxMoving];
+  T value[kMaxMovingJoints];
   for (int k = 0; k < chain.joints; ++k) {
     const auto& joint = chain.joint[k];
     slope[k] = T(joint.multiplier * joint.unit);

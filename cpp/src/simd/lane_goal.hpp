@@ -44,7 +44,10 @@ class FullPose {
  private:
   IKSEL_INLINE T row(int r) const { return row_of(pack_.target[r]); }
   static IKSEL_INLINE T row_of(const NumberOf<T> (&lanes)[kWidth]) { return Lanes<T>::load(lanes); }
-  static IKSEL_INLINE T row_of(NumberOf<T> all) { return T(all); }
+  template <typename All>
+  static IKSEL_INLINE T row_of(const All& all) {
+    return T(all);
+  }
 
   const Pack& pack_;
 };

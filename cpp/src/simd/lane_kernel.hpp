@@ -83,8 +83,8 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
   for (int j = 0; j < n; ++j) q[j] = Lanes<T>::load(pack.q[j] + first);
 
   for (int iteration = 1;; ++iteration) {
-    T J[kMaxMoving][6];
-    T slope[kMaxMoving];
+    T J[kMaxMovingJoints][6];
+    T slope[kMaxMovingJoints];
     LaneFrame<T> frame;
     if (kIsSimple) {
       place_joints(chain, q, J, frame, n);

@@ -36,18 +36,17 @@ struct Lanes<double> : OneLane<double> {};
 template <>
 struct Lanes<float> : OneLane<float> {};
 
-inline double select(bool mask, double a, double b) { return mask ? a : b; }
-inline float select(bool mask, float a, float b) { return mask ? a : b; }
-inline bool any(bool mask) { return mask; }
-inline double sqrt(double x) { return __builtin_sqrt(x); }
-inline float sqrt(float x) { return __builtin_sqrtf(x); }
-inline double max(double a, double b) { return a > b ? a : b; }
-inline float max(float a, float b) { return a > b ? a : b; }
-inline double min(double a, double b) { return a < b ? a : b; }
-inline float min(float a, float b) { return a < b ? a : b; }
-inline float abs(float x) { return __builtin_fabsf(x); }
-
-inline double abs(double x) { return __builtin_fabs(x); }
+IKSEL_INLINE double select(bool mask, double a, double b) { return mask ? a : b; }
+IKSEL_INLINE float select(bool mask, float a, float b) { return mask ? a : b; }
+IKSEL_INLINE bool any(bool mask) { return mask; }
+IKSEL_INLINE double sqrt(double x) { return __builtin_sqrt(x); }
+IKSEL_INLINE float sqrt(float x) { return __builtin_sqrtf(x); }
+IKSEL_INLINE double max(double a, double b) { return a > b ? a : b; }
+IKSEL_INLINE float max(float a, float b) { return a > b ? a : b; }
+IKSEL_INLINE double min(double a, double b) { return a < b ? a : b; }
+IKSEL_INLINE float min(float a, float b) { return a < b ? a : b; }
+IKSEL_INLINE float abs(float x) { return __builtin_fabsf(x); }
+IKSEL_INLINE double abs(double x) { return __builtin_fabs(x); }
 
 /// The lanes where a condition holds, as bits.
 template <typename T, typename Mask>

@@ -5,13 +5,13 @@
 
 #include <cstddef>
 
+#include "base/constants.hpp"
 #include "base/motion_curve.hpp"
 
 namespace iksel::lanes {
 
-/// Most degrees of freedom, and most joints that they move.
+/// Most degrees of freedom.
 inline constexpr int kMaxJoints = 32;
-inline constexpr int kMaxMoving = 64;
 /// Most sums of joint values that are limited.
 inline constexpr int kMostSums = 8;
 /// Most lanes of a pack.
@@ -19,7 +19,6 @@ inline constexpr int kWidth = 8;
 /// Samples that a leaf or a stage of neighbours hands over at a time; a multiple of every pack's
 /// single-precision lanes.
 inline constexpr int kBlock = 16;
-inline constexpr float kEntries[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A joint that moves, as a KernelJoint.
 template <typename Number>
@@ -59,9 +58,21 @@ struct LaneChainOf {
   int joints;      ///< that they move
   bool is_simple;  ///< they are these, one to one
   LaneVariableOf<Number> variable[kMaxJoints];
-  LaneJointOf<Number> joint[kMaxMoving];
+  LaneJointOf<Number> joint[kMaxMovingJoints];
   int sums;
   LaneSumOf<Number> sum[kMostSums];
+  /// Of each variable [rad or m], and their inverses.
+  double unit[kMaxJoints], per_unit[kMaxJoints];
+
+  /// A joint value in metres or radians, as the chain counts it, and back.
+  template <typename Value>
+  [[nodiscard]] Value to_lane(int j, Value value) const {
+    return value * static_cast<Value>(per_unit[j]);
+  }
+  template <typename Value>
+  [[nodiscard]] Value from_lane(int j, Value value) const {
+    return value * static_cast<Value>(unit[j]);
+  }
 };
 using LaneChain = LaneChainOf<double>;
 
@@ -102,15 +113,23 @@ struct RoughPack {
   alignas(64) float error2[kBlock];
 };
 
+/// Where the lanes of a pack stand on self-motions of seven joints, and all reach that full pose.
+struct CurvePack {
+  double target[kFullPoseRows];
+  alignas(64) double q[kCurveJoints][kWidth];
+  /// Unit vectors along the curves, the way that each lane goes.
+  alignas(64) double tangent[kCurveJoints][kWidth];
+  /// 1 where tangents are oriented that way, else -1.
+  alignas(64) double side[kWidth];
+  alignas(64) double step[kWidth];  ///< length of the next step [rad and m]
+  double longest;                   ///< what it may become
+};
+
 /// How an advance ended.
 struct PackResult {
   unsigned done;   ///< bit l: lane l arrived, as far as the step tells
   int iterations;  ///< of the whole pack
 };
-
-/// Iterates all lanes of a pack so often: seeds that are mostly going to fail need no precision.
-using AdvanceRoughly = void (*)(const LaneChainOf<float>& chain, const LaneOptions& options,
-                                int iterations, RoughPack& pack);
 
 /// A pose to come near to, and what is missing of it counts (closest_kernel.hpp). In the first
 /// joint's frame.
@@ -125,11 +144,6 @@ struct ClosestTarget {
   float tcp[3];     ///< seen from the last joint
 };
 
-/// Moves kBlock seeds so often towards where the least is missing. Of each joint kBlock values in q
-/// follow each other; `remainder` becomes what is missing where they then are.
-using Approach = void (*)(const LaneChainOf<float>& chain, const ClosestTarget& target,
-                          int iterations, float* q, float* remainder);
-
 /// How a side of the chain is left out of the samples (reduction.hpp).
 enum class Side : int { none, rotation, translation };
 
@@ -142,19 +156,18 @@ constexpr int block_rows(int n) { return kFullPoseRows + 7 * n; }
 struct SeedChain {
   int n;
   Side left, right;
-  float weight2;         ///< squared rotation weight of the key [m^2]
-  float longest_step;    ///< length of the first step at most [rad or m]
-  float outside_weight;  ///< of the squared way by which the first step left the limits
+  float weight2;  ///< squared rotation weight of the key [m^2]
   float offset_first, offset_last;
   float lower[kMaxJoints], upper[kMaxJoints], middle[kMaxJoints];
   bool wraps[kMaxJoints];  ///< turns, so that whole turns change nothing
 };
 
-/// Pose of the last joint's frame to reach, seen from the first one's: columns x, y, z and
-/// position.
-struct SeedTarget {
-  float x[3], y[3], z[3], p[3];
+/// A full pose to reach.
+template <typename N>
+struct SeedTargetOf {
+  N target[kFullPoseRows];
 };
+using SeedTarget = SeedTargetOf<float>;
 
 /// Seeds made from a block.
 struct SeedPack {
@@ -176,7 +189,6 @@ struct ResidualForm;
 struct LoopForm;
 struct LoopTarget;
 struct TrigonometricPolynomial;
-struct CurvePack;
 struct SceneView;
 struct SceneRoom;
 
@@ -196,8 +208,13 @@ struct LaneKernels {
   /// Lanes iterate in lockstep. `narrow` takes the least time for an iteration, which is what the
   /// first answer for one pose waits for; `wide` the least for each lane.
   PackKernels narrow, wide;
-  AdvanceRoughly advance_roughly;
-  Approach approach;
+  /// Iterates all lanes of a pack so often: seeds that are mostly going to fail need no precision.
+  void (*advance_roughly)(const LaneChainOf<float>& chain, const LaneOptions& options,
+                          int iterations, RoughPack& pack);
+  /// Moves kBlock seeds so often towards where the least is missing. Of each joint kBlock values in
+  /// q follow each other; `remainder` becomes what is missing where they then are.
+  void (*approach)(const LaneChainOf<float>& chain, const ClosestTarget& target, int iterations,
+                   float* q, float* remainder);
   void (*prepare)(const SeedChain& chain, const SeedTarget& target, const float* block,
                   SeedPack& out);
   /// Blocks of configurations of n joints, kBlock values of each joint one after the other and so

@@ -13,8 +13,8 @@ IKSEL_INLINE void turn_to_image(const SumForm& form, int image, const T (&q)[7],
   for (int j = 0; j < 7; ++j) at[j] = q[j];
   for (int k = 0; k < form.turning; ++k) {
     const int j = form.joint[k];
-    const T turns = nearest_integer((T(form.middle[j]) - q[j]) * T(0.15915494309189533577));
-    at[j] = q[j] + turns * T(6.28318530717958647693) + T(form.turned[image][j]);
+    const T turns = nearest_integer((T(form.middle[j]) - q[j]) * T(1 / kTwoPi));
+    at[j] = q[j] + turns * T(kTwoPi) + T(form.turned[image][j]);
   }
 }
 

@@ -131,12 +131,12 @@ IKSEL_INLINE void find_determinants(const LoopTarget& target, const double* angl
 /// At `n` angles [rad], a multiple of kWidth.
 template <typename T>
 void find_determinants(const LoopTarget& target, const double* angles, int n, double* values) {
-  constexpr int kPack = Lanes<T>::kCount;
+  using L = Lanes<T>;
   int first = 0;
-  for (; first + 2 * kPack <= n; first += 2 * kPack) {
+  for (; first + 2 * L::kCount <= n; first += 2 * L::kCount) {
     find_determinants<2, T>(target, angles + first, values + first);
   }
-  for (; first < n; first += kPack) {
+  for (; first < n; first += L::kCount) {
     find_determinants<1, T>(target, angles + first, values + first);
   }
 }
@@ -156,7 +156,6 @@ IKSEL_INLINE void multiply_columns(const double* A, int rows, const double* B, i
   }
 }
 
-/// C = A B, as Multiply says.
 template <typename T>
 void multiply(const double* A, int rows, const double* B, int inner, int columns, double* C) {
   int k = 0;

@@ -15,69 +15,57 @@ struct NullSpace {
   T m[kProducts][kProducts];
   T inverse[kProducts];  ///< of the diagonal, as far as it is not 0
 
-  IKSEL_INLINE explicit NullSpace(const Products<T>& products);
+  IKSEL_INLINE explicit NullSpace(const Products<T>& products) {
+    for (int i = 0; i < kAlone; ++i) {
+      for (int k = 0; k < kAlone; ++k) {
+        m[k][i] = products.half[0][k][i];
+        m[kAlone + k][i] = T(0.0);
+        m[kAlone + k][kAlone + i] = products.half[1][k][i];
+      }
+      for (int k = kAlone; k < kAlone + kEquations; ++k) {
+        m[kAlone + k][i] = products.half[0][k][i];
+        m[kAlone + k][kAlone + i] = products.half[1][k][i];
+      }
+    }
+    for (int k = 0; k < kEquations; ++k) {
+      for (int i = 0; i <= k; ++i) m[kEquations + k][kEquations + i] = products.rest[k][i];
+    }
+    for (int k = 0; k < kProducts; ++k) {
+      const T size = max(abs(m[k][k]), T(1e-16) * abs(m[0][0]) + T(1e-200));
+      inverse[k] = select(m[k][k] < T(0.0), T(-1.0), T(1.0)) / size;
+    }
+  }
   /// A step of inverse iteration, by (m^T m)^-1.
-  IKSEL_INLINE void iterate(T (&x)[kProducts]) const;
+  IKSEL_INLINE void iterate(T (&x)[kProducts]) const {
+    for (int k = 0; k < kProducts; ++k) {
+      for (int i = 0; i < k; ++i) x[k] = x[k] - m[k][i] * x[i];
+      x[k] = x[k] * inverse[k];
+    }
+    T square = T(0.0);
+    for (int k = kProducts; k-- > 0;) {
+      for (int j = k + 1; j < kProducts; ++j) x[k] = x[k] - m[j][k] * x[j];
+      x[k] = x[k] * inverse[k];
+      square = square + x[k] * x[k];
+    }
+    const T scale = T(1.0) / sqrt(square);
+    for (int k = 0; k < kProducts; ++k) x[k] = x[k] * scale;
+  }
   /// What m takes to nearly 0: the products with c^3, s^3, c^2 s and c s^2.
-  IKSEL_INLINE void find_first(T (&x)[kProducts]) const;
+  IKSEL_INLINE void find_first(T (&x)[kProducts]) const {
+    for (T& component : x) component = T(1.0);
+    for (int step = 0; step < 2; ++step) iterate(x);
+  }
   /// And that across x.
-  IKSEL_INLINE void find_second(const T (&x)[kProducts], T (&y)[kProducts]) const;
+  IKSEL_INLINE void find_second(const T (&x)[kProducts], T (&y)[kProducts]) const {
+    for (int k = 0; k < kProducts; ++k) y[k] = T(k % 2 == 0 ? 1.0 : -1.0);
+    for (int step = 0; step < 3; ++step) {
+      T share = T(0.0);
+      for (int k = 0; k < kProducts; ++k) share = share + x[k] * y[k];
+      for (int k = 0; k < kProducts; ++k) y[k] = y[k] - share * x[k];
+      if (step < 2) iterate(y);
+    }
+  }
 };
-
-template <typename T>
-IKSEL_INLINE NullSpace<T>::NullSpace(const Products<T>& products) {
-  for (int i = 0; i < kAlone; ++i) {
-    for (int k = 0; k < kAlone; ++k) {
-      m[k][i] = products.half[0][k][i];
-      m[kAlone + k][i] = T(0.0);
-      m[kAlone + k][kAlone + i] = products.half[1][k][i];
-    }
-    for (int k = kAlone; k < kAlone + kEquations; ++k) {
-      m[kAlone + k][i] = products.half[0][k][i];
-      m[kAlone + k][kAlone + i] = products.half[1][k][i];
-    }
-  }
-  for (int k = 0; k < kEquations; ++k) {
-    for (int i = 0; i <= k; ++i) m[kEquations + k][kEquations + i] = products.rest[k][i];
-  }
-  for (int k = 0; k < kProducts; ++k) {
-    const T size = max(abs(m[k][k]), T(1e-16) * abs(m[0][0]) + T(1e-200));
-    inverse[k] = select(m[k][k] < T(0.0), T(-1.0), T(1.0)) / size;
-  }
-}
-
-template <typename T>
-IKSEL_INLINE void NullSpace<T>::iterate(T (&x)[kProducts]) const {
-  for (int k = 0; k < kProducts; ++k) {
-    for (int i = 0; i < k; ++i) x[k] = x[k] - m[k][i] * x[i];
-    x[k] = x[k] * inverse[k];
-  }
-  T square = T(0.0);
-  for (int k = kProducts; k-- > 0;) {
-    for (int j = k + 1; j < kProducts; ++j) x[k] = x[k] - m[j][k] * x[j];
-    x[k] = x[k] * inverse[k];
-    square = square + x[k] * x[k];
-  }
-  const T scale = T(1.0) / sqrt(square);
-  for (int k = 0; k < kProducts; ++k) x[k] = x[k] * scale;
-}
-
-template <typename T>
-IKSEL_INLINE void NullSpace<T>::find_first(T (&x)[kProducts]) const {
-  for (T& component : x) component = T(1.0);
-  for (int step = 0; step < 2; ++step) iterate(x);
-}
-
-template <typename T>
-IKSEL_INLINE void NullSpace<T>::find_second(const T (&x)[kProducts], T (&y)[kProducts]) const {
-  for (int k = 0; k < kProducts; ++k) y[k] = T(k % 2 == 0 ? 1.0 : -1.0);
-  for (int step = 0; step < 3; ++step) {
-    T share = T(0.0);
-    for (int k = 0; k < kProducts; ++k) share = share + x[k] * y[k];
-    for (int k = 0; k < kProducts; ++k) y[k] = y[k] - share * x[k];
-    if (step < 2) iterate(y);
-  }
-}
 
 /// By how much cosines and sines of e are off, bilinear in x and y: 0 where both are those of one
 /// angle.

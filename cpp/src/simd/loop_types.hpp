@@ -17,7 +17,8 @@ struct LoopForm {
   enum class Rest { anyhow, meet, parallel };
 
   Rest rest;
-  [[nodiscard]] bool has_two_ways() const { return rest != Rest::anyhow; }
+  /// Part of the kernels too, of which each is of its own instruction set (lane_math.hpp).
+  [[nodiscard, gnu::always_inline]] bool has_two_ways() const { return rest != Rest::anyhow; }
   int before;        ///< how many of c, d and e the loop passes before the target
   double h[6][3];    ///< unit vectors along the axes
   double p[6][3];    ///< a point on each

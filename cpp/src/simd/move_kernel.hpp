@@ -27,8 +27,8 @@ template <typename T>
 IKSEL_INLINE T loose_move(const MoveForm& form, int j, const T& q) {
   const T d = q - T(form.from[j]);
   if (!form.turns[j]) return abs(d);
-  const T turns = nearest_integer(d * T(0.15915494309189533577));
-  const T loose = abs(d - T(6.28318530717958647693) * turns);
+  const T turns = nearest_integer(d * T(1 / kTwoPi));
+  const T loose = abs(d - T(kTwoPi) * turns);
   if (form.has_images[j]) return loose;
   const T beyond = max(T(form.lower[j]) - q, q - T(form.upper[j]));
   return select(beyond > T(form.margin), loose, abs(d));
@@ -37,15 +37,13 @@ IKSEL_INLINE T loose_move(const MoveForm& form, int j, const T& q) {
 /// And to that nearest inside the limits.
 template <typename T>
 IKSEL_INLINE void add_inside_move(const MoveForm& form, int j, const T& q, T& inside) {
-  const T whole(6.28318530717958647693);
-  const T per_turn(0.15915494309189533577);
   const T d = q - T(form.from[j]);
-  const T turns = form.turns[j] ? nearest_integer(d * per_turn) : T(0.0);
+  const T turns = form.turns[j] ? nearest_integer(d * T(1 / kTwoPi)) : T(0.0);
   T image = d;
   if (form.has_images[j]) {
-    const T least = round_up((T(form.lower[j]) - q) * per_turn);
-    const T most = T(0.0) - round_up((q - T(form.upper[j])) * per_turn);
-    const T moved = d + whole * min(max(T(0.0) - turns, least), most);
+    const T least = round_up((T(form.lower[j]) - q) * T(1 / kTwoPi));
+    const T most = T(0.0) - round_up((q - T(form.upper[j])) * T(1 / kTwoPi));
+    const T moved = d + T(kTwoPi) * min(max(T(0.0) - turns, least), most);
     // What is all but at a limit stays there.
     const T outside = max(T(form.lower[j]) - q, q - T(form.upper[j]));
     image = select(max(abs(turns), outside * T(0.25 / form.margin)) > T(0.5), moved, d);

@@ -12,8 +12,8 @@
 //   k0^2 W N + k0 Y Re(z) + |m|^2 Y^2 / 4 - Im(z)^2 = 0.
 #pragma once
 
+#include "simd/branch_types.hpp"
 #include "simd/lane_math.hpp"
-#include "simd/residual_types.hpp"
 
 namespace iksel::lanes {
 
@@ -107,10 +107,7 @@ double find_residuals(const ResidualForm& form, const double* angles, int n, dou
   double lanes[kWidth];
   Lanes<T>::store(least, lanes);
   double all = lanes[0];
-  // By hand: a function of one lane belongs to another instruction set.
-  for (int i = 1; i < Lanes<T>::kCount; ++i) {
-    if (lanes[i] < all) all = lanes[i];
-  }
+  for (int i = 1; i < Lanes<T>::kCount; ++i) all = min(all, lanes[i]);
   return all;
 }
 

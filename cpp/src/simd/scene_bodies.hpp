@@ -48,8 +48,8 @@ class SceneBodies {
         z_(y_ + room.link_stride),
         radius_(z_ + room.link_stride) {}
 
-  /// Places the bodies as they are at q.
-  void place_bodies(const double* q) {
+  /// Places the bodies as they are at q. False if some are nowhere, since a motion is not finite.
+  [[nodiscard]] bool place_bodies(const double* q) {
     double motion[kMaxBodies];
     double s[kMaxBodies];
     double c[kMaxBodies];
@@ -70,7 +70,15 @@ class SceneBodies {
       Lanes<T>::store(cosine, c + i);
     }
     for (int k = 0; k < kFrameNumbers; ++k) room_.frame[k] = k % (kFrameRows + 1) == 0 ? 1.0 : 0.0;
-    for (int i = 1; i < scene_.bodies; ++i) place_body(i, motion[i], s[i], c[i]);
+    for (int i = 1; i < scene_.bodies; ++i) {
+      if (!(abs(motion[i]) <= kSincosRange)) {
+        s[i] = __builtin_sin(motion[i]);
+        c[i] = __builtin_cos(motion[i]);
+        if (s[i] != s[i]) return false;
+      }
+      place_body(i, motion[i], s[i], c[i]);
+    }
+    return true;
   }
   [[nodiscard]] IKSEL_INLINE BodyFrame frame(int body) const {
     const double* in = room_.frame + kFrameNumbers * body;

@@ -18,13 +18,12 @@ class SceneCheck {
   using Kind = SceneCulprit::Kind;
 
   SceneCheck(const SceneView& scene, const SceneRoom& room, const double* q)
-      : scene_(scene), room_(room), bodies_(scene, room) {
-    bodies_.place_bodies(q);
-  }
+      : scene_(scene), room_(room), bodies_(scene, room), are_placed_(bodies_.place_bodies(q)) {}
 
   /// Returns the clearance. Begins with the culprit, which is that of this configuration afterwards
   /// if it collides.
   double find(SceneCulprit& culprit) {
+    if (!are_placed_) return 0;
     bool touches = touches_again(culprit);
     if (!touches) {
       bodies_.place_links();
@@ -114,16 +113,13 @@ class SceneCheck {
 
   bool test_pairs(SceneCulprit& culprit) {
     const int count = bodies_.find_near_pairs();
-    for (int i = 0; i < count; ++i) {
-      if (take_pair(room_.near[i], culprit)) return true;
+    for (const int* i = room_.near; i != room_.near + count; ++i) {
+      const ScenePair& pair = scene_.pair[*i];
+      if (!test_pair(pair, a_from_b(pair))) continue;
+      culprit = {Kind::pair, *i, 0, 0, 0, 0};
+      return true;
     }
     return false;
-  }
-  bool take_pair(int i, SceneCulprit& culprit) {
-    const ScenePair& pair = scene_.pair[i];
-    if (!test_pair(pair, a_from_b(pair))) return false;
-    culprit = {Kind::pair, i, 0, 0, 0, 0};
-    return true;
   }
   /// The frame of a pair's first link, seen from its second's.
   [[nodiscard]] BodyFrame a_from_b(const ScenePair& pair) const {
@@ -136,18 +132,15 @@ class SceneCheck {
     return test_nodes(from_b, of_a, around(scene_.link[pair.b]));
   }
   /// The clearances of a node's balls, which stand in lanes, from one.
-  static IKSEL_INLINE T clearance_from(const SceneNode& node, int first, const Vec<T>& centres,
-                                       const Around& one, double less) {
-    return clearance(centres, {T(one.centre.x), T(one.centre.y), T(one.centre.z)},
-                     Lanes<T>::load(node.radius + first) + T(one.radius - less));
+  [[nodiscard]] IKSEL_INLINE T clearance_from(const SceneNode& node, int first,
+                                              const Vec<T>& centres, const Around& one) const {
+    // Both balls of a pair are smaller.
+    const T radii = Lanes<T>::load(node.radius + first) + T(one.radius - 2 * scene_.smaller);
+    return clearance(centres, {T(one.centre.x), T(one.centre.y), T(one.centre.z)}, radii);
   }
   static IKSEL_INLINE Vec<T> centres(const SceneNode& node, int first) {
     return {Lanes<T>::load(node.x + first), Lanes<T>::load(node.y + first),
             Lanes<T>::load(node.z + first)};
-  }
-  /// Ball `k` of a node in the frame that it is seen from.
-  static IKSEL_INLINE Around child(const SceneNode& node, int k, const Vec<double>& centre) {
-    return {centre, node.radius[k], node.first + k};
   }
 
   /// Whether balls of two links touch; a's frame is seen from b's, as its balls are. Nothing is
@@ -155,45 +148,34 @@ class SceneCheck {
   bool test_nodes(const BodyFrame& from_b, const Around& a, const Around& b) {
     const SceneNode& of_a = scene_.node[a.node];
     const SceneNode& of_b = scene_.node[b.node];
-    // Of both balls of a pair.
-    const double less = 2 * scene_.smaller;
     // What is larger holds more that is far away.
-    if (!of_b.is_leaf && (of_a.is_leaf || a.radius <= b.radius)) {
-      for (int first = 0; first < of_b.count; first += Lanes<T>::kCount) {
-        const T found = clearance_from(of_b, first, centres(of_b, first), a, less);
-        unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(of_b.count, first);
-        if (mask == 0) continue;
-        double of_lane[Lanes<T>::kCount];
-        Lanes<T>::store(found, of_lane);
-        while (mask != 0) {
-          const int k = first + take_least(of_lane, mask);
-          const Around below = child(of_b, k, {of_b.x[k], of_b.y[k], of_b.z[k]});
-          if (test_nodes(from_b, a, below)) return true;
-        }
-      }
-      return false;
-    }
-    const bool both_leaves = of_a.is_leaf && of_b.is_leaf;
-    for (int first = 0; first < of_a.count; first += Lanes<T>::kCount) {
-      const Vec<T> moved = placed(from_b, centres(of_a, first));
-      const T found = clearance_from(of_a, first, moved, b, less);
-      unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(of_a.count, first);
+    const bool into_b = !of_b.is_leaf && (of_a.is_leaf || a.radius <= b.radius);
+    const SceneNode& of = into_b ? of_b : of_a;
+    for (int first = 0; first < of.count; first += Lanes<T>::kCount) {
+      const Vec<T> on_body = centres(of, first);
+      const Vec<T> at = into_b ? on_body : placed(from_b, on_body);
+      const T found = clearance_from(of, first, at, into_b ? a : b);
+      unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(of.count, first);
       if (mask == 0) continue;
       double x[Lanes<T>::kCount];
       double y[Lanes<T>::kCount];
       double z[Lanes<T>::kCount];
       double of_lane[Lanes<T>::kCount];
       Lanes<T>::store(found, of_lane);
-      Lanes<T>::store(moved.x, x);
-      Lanes<T>::store(moved.y, y);
-      Lanes<T>::store(moved.z, z);
+      Lanes<T>::store(at.x, x);
+      Lanes<T>::store(at.y, y);
+      Lanes<T>::store(at.z, z);
       while (mask != 0) {
-        const int k = take_least(of_lane, mask);
-        const Around below = child(of_a, first + k, {x[k], y[k], z[k]});
-        if (!both_leaves && test_nodes(from_b, below, b)) return true;
-        if (both_leaves && test_leaf(b.node, below)) {
+        const int lane = take_least(of_lane, mask);
+        const int k = first + lane;
+        const Around below{{x[lane], y[lane], z[lane]}, of.radius[k], of.first + k};
+        if (into_b) {
+          if (test_nodes(from_b, a, below)) return true;
+        } else if (!(of_a.is_leaf && of_b.is_leaf)) {
+          if (test_nodes(from_b, below, b)) return true;
+        } else if (test_leaf(b.node, below)) {
           leaf_ = a.node;
-          ball_ = first + k;
+          ball_ = k;
           return true;
         }
       }
@@ -202,9 +184,8 @@ class SceneCheck {
   }
   bool test_leaf(int at, const Around& ball) {
     const SceneNode& leaf = scene_.node[at];
-    const double less = 2 * scene_.smaller;
     for (int first = 0; first < leaf.count; first += Lanes<T>::kCount) {
-      const T found = clearance_from(leaf, first, centres(leaf, first), ball, less);
+      const T found = clearance_from(leaf, first, centres(leaf, first), ball);
       const unsigned mask = to_bits<T>(found <= T(0.0)) & lanes_up_to(leaf.count, first);
       if (mask == 0) continue;
       other_ = at;
@@ -270,6 +251,7 @@ class SceneCheck {
   const SceneView& scene_;
   const SceneRoom& room_;
   SceneBodies<T> bodies_;
+  bool are_placed_;
   double clearance_ = 1;
   /// What was found to touch (SceneCulprit).
   int leaf_ = 0, ball_ = 0, other_ = 0;

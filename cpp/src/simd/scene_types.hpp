@@ -37,9 +37,9 @@ struct SceneNode {
   bool is_leaf;
 };
 
-/// Balls `first` to `first + count - 1` are a link's, in the tree that hangs from node `root`.
+/// Its balls are in the tree that hangs from node `root`.
 struct SceneLink {
-  int body, first, count, root;
+  int body, root;
   SceneBall around;  ///< around them all
 };
 
@@ -104,8 +104,8 @@ struct SceneRoom {
 };
 
 /// find_clearance takes the joint values of one configuration, and returns its clearance:
-/// distance^2 - radius^2 [m^2], the least of the balls that were found to touch, or 1 if none does.
-/// One that touches ends it.
+/// distance^2 - radius^2 [m^2], the least of the balls that were found to touch, 1 if none does, or
+/// 0 if the joint values are none. One that touches ends it.
 struct SceneView {
   int bodies, links, link_runs, pairs, pair_blocks, blocks, cylinders, planes;
   double smaller;         ///< by so much is each ball than it says [m]

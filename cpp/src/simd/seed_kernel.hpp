@@ -5,7 +5,7 @@
 // need not be exact.
 #pragma once
 
-#include "simd/lane_math.hpp"
+#include "simd/lane_goal.hpp"
 #include "simd/lane_types.hpp"
 
 namespace iksel::lanes {
@@ -16,12 +16,6 @@ inline T wrap_near(const T& q, float middle) {
   const T turns = nearest_integer((q - T(middle)) * T(0.15915494F));
   return q - turns * T(6.2831853F);
 }
-
-/// Poses of a pack of samples or of the target, seen from the first joint: position and columns.
-template <typename T>
-struct SeedFrame {
-  T p[3], x[3], y[3], z[3];
-};
 
 /// Joint values left out of the samples, and what they do to the poses.
 template <typename T>
@@ -35,60 +29,61 @@ struct LeftOut {
 
 /// The left side: the first joint's value that brings the sample nearest to the target.
 template <typename T>
-IKSEL_INLINE void set_first(const SeedChain& chain, const SeedTarget& target, SeedFrame<T>& sample,
-                            LeftOut<T>& out) {
+IKSEL_INLINE void set_first(const SeedChain& chain, const SeedTarget& seed_target,
+                            LaneFrame<T>& sample, LeftOut<T>& out) {
+  const float* const target = seed_target.target;
   const auto& z = sample.z;
   auto& p = sample.p;
   if (chain.left == Side::rotation) {
     const T w2 = T(chain.weight2);
     T px = p[0];
     T py = p[1];
-    float tx = target.p[0];
-    float ty = target.p[1];
+    float tx = target[0];
+    float ty = target[1];
+    const float* const tz = target + 9;
     if (chain.right == Side::translation) {
       // The slide moves the position, but not the foot of the perpendicular onto its line.
       const T along = p[0] * z[0] + p[1] * z[1] + p[2] * z[2];
       px = px - along * z[0];
       py = py - along * z[1];
-      const float target_along = tx * target.z[0] + ty * target.z[1] + target.p[2] * target.z[2];
-      tx -= target_along * target.z[0];
-      ty -= target_along * target.z[1];
+      const float target_along = tx * tz[0] + ty * tz[1] + target[2] * tz[2];
+      tx -= target_along * tz[0];
+      ty -= target_along * tz[1];
     }
-    const T S = px * T(ty) - py * T(tx) + w2 * (z[0] * T(target.z[1]) - z[1] * T(target.z[0]));
-    const T C = px * T(tx) + py * T(ty) + w2 * (z[0] * T(target.z[0]) + z[1] * T(target.z[1]));
+    const T S = px * T(ty) - py * T(tx) + w2 * (z[0] * T(tz[1]) - z[1] * T(tz[0]));
+    const T C = px * T(tx) + py * T(ty) + w2 * (z[0] * T(tz[0]) + z[1] * T(tz[1]));
     const T scale = T(1.0F) / sqrt(max(S * S + C * C, T(1e-30F)));
     out.cosine = select(C * C + S * S > T(1e-30F), C * scale, T(1.0F));
     out.sine = S * scale;
     out.first = wrap_near(rough_atan2(S, C) - T(chain.offset_first), chain.middle[0]);
   } else if (chain.left == Side::translation) {
-    out.first = T(target.p[2]) - p[2] - T(chain.offset_first);
-    p[2] = T(target.p[2]);
+    out.first = T(target[2]) - p[2] - T(chain.offset_first);
+    p[2] = T(target[2]);
   }
 }
 
 /// The target as the samples see it after set_first.
 template <typename T>
-IKSEL_INLINE void turn_back(const SeedTarget& target, const LeftOut<T>& left, SeedFrame<T>& out) {
-  const auto turned_back = [&](const float(&t)[3], T(&to)[3]) {
+IKSEL_INLINE void turn_back(const SeedTarget& target, const LeftOut<T>& left,
+                            SeedTargetOf<T>& out) {
+  for (int row = 0; row < kFullPoseRows; row += 3) {
+    const float* const t = target.target + row;
+    T* const to = out.target + row;
     to[0] = left.cosine * T(t[0]) + left.sine * T(t[1]);
     to[1] = left.cosine * T(t[1]) - left.sine * T(t[0]);
     to[2] = T(t[2]);
-  };
-  turned_back(target.p, out.p);
-  turned_back(target.x, out.x);
-  turned_back(target.y, out.y);
-  turned_back(target.z, out.z);
+  }
 }
 
 /// The right side: the last joint's value, and the sample's columns turned by it.
 template <typename T>
-IKSEL_INLINE void set_last(const SeedChain& chain, const SeedFrame<T>& target, SeedFrame<T>& sample,
-                           LeftOut<T>& out) {
+IKSEL_INLINE void set_last(const SeedChain& chain, const SeedTargetOf<T>& target,
+                           LaneFrame<T>& sample, LeftOut<T>& out) {
   auto& x = sample.x;
   auto& y = sample.y;
   if (chain.right == Side::rotation) {
-    const auto& tx = target.x;
-    const auto& ty = target.y;
+    const T* const tx = target.target + 3;
+    const T* const ty = target.target + 6;
     const T sine =
         y[0] * tx[0] + y[1] * tx[1] + y[2] * tx[2] - (x[0] * ty[0] + x[1] * ty[1] + x[2] * ty[2]);
     const T cosine =
@@ -97,16 +92,12 @@ IKSEL_INLINE void set_last(const SeedChain& chain, const SeedFrame<T>& target, S
     const T scale = T(1.0F) / sqrt(max(square, T(1e-30F)));
     const T cn = select(square > T(1e-30F), cosine * scale, T(1.0F));
     const T sn = sine * scale;
-    for (int i = 0; i < 3; ++i) {
-      const T a = x[i];
-      x[i] = a * cn + y[i] * sn;
-      y[i] = y[i] * cn - a * sn;
-    }
+    turn(x, y, cn, sn);
     out.last =
         wrap_near(rough_atan2(sine, cosine) - T(chain.offset_last), chain.middle[chain.n - 1]);
   } else if (chain.right == Side::translation) {
     for (int i = 0; i < 3; ++i) {
-      out.slide = out.slide + (target.p[i] - sample.p[i]) * sample.z[i];
+      out.slide = out.slide + (target.target[i] - sample.p[i]) * sample.z[i];
     }
     out.last = out.slide - T(chain.offset_last);
   }
@@ -115,27 +106,15 @@ IKSEL_INLINE void set_last(const SeedChain& chain, const SeedFrame<T>& target, S
 /// What is left of the error, as the iteration measures it, at the sample's own origin, where its
 /// pseudo-inverse was taken.
 template <typename T>
-IKSEL_INLINE void measure_rest(const SeedChain& chain, const SeedFrame<T>& target,
-                               const SeedFrame<T>& sample, const T& slide, T (&e)[6]) {
-  const auto& [p, x, y, z] = sample;
-  const auto& [tp, tx, ty, tz] = target;
-  T trace = T(1.0F);
-  for (int i = 0; i < 3; ++i) trace = trace + x[i] * tx[i] + y[i] * ty[i] + z[i] * tz[i];
-  const T factor = T(1.0F) / sqrt(max(trace, T(1e-6F)));
+IKSEL_INLINE void measure_rest(const SeedChain& chain, const SeedTargetOf<T>& target,
+                               const LaneFrame<T>& sample, const T& slide, T (&e)[6]) {
+  FullPose<T, SeedTargetOf<T>>(target, nullptr).measure(sample, e);
+  if (chain.right != Side::translation) return;
+  const auto& z = sample.z;
   for (int i = 0; i < 3; ++i) {
     const int a = (i + 1) % 3;
     const int b = (i + 2) % 3;
-    e[3 + i] =
-        (x[a] * tx[b] - x[b] * tx[a] + y[a] * ty[b] - y[b] * ty[a] + z[a] * tz[b] - z[b] * tz[a]) *
-        factor;
-  }
-  for (int i = 0; i < 3; ++i) {
-    e[i] = tp[i] - p[i];
-    if (chain.right == Side::translation) {
-      const int a = (i + 1) % 3;
-      const int b = (i + 2) % 3;
-      e[i] = e[i] - slide * z[i] - slide * (e[3 + a] * z[b] - e[3 + b] * z[a]);
-    }
+    e[i] = e[i] - slide * z[i] - slide * (e[3 + a] * z[b] - e[3 + b] * z[a]);
   }
 }
 
@@ -156,8 +135,9 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
     for (int r = 1; r < 6; ++r) dq[j] = dq[j] + row(at + r) * e[r];
     dq2 = dq2 + dq[j] * dq[j];
   }
-  // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction.
-  const T shorten = min(T(1.0F), T(chain.longest_step) / sqrt(max(dq2, T(1e-20F))));
+  // Far from the sample its pseudo-inverse is no guide: only so long a step in its direction [rad
+  // or m].
+  const T shorten = min(T(1.0F), T(1.0F) / sqrt(max(dq2, T(1e-20F))));
   T outside = T(0.0F);
   for (int j = 0; j < n; ++j) {
     T q = row(kFullPoseRows + j);
@@ -169,21 +149,24 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
     outside = outside + (q - inside) * (q - inside);
     L::store(inside, out.q[j] + offset);
   }
-  return dq2 + T(chain.outside_weight) * outside;
+  // Whose first step leaves the limits is rarely saved.
+  return dq2 + T(1000.0F) * outside;
 }
 
 /// Puts the seeds in order. The rank of a seed is how many others are better; of equals the first.
 template <typename T, int kVectors>
 IKSEL_INLINE void rank_seeds(const T (&score)[kVectors], SeedPack& out) {
   using L = Lanes<T>;
+  float entries[kBlock];
+  for (int entry = 0; entry < kBlock; ++entry) entries[entry] = static_cast<float>(entry);
   T rank[kVectors];
   for (int v = 0; v < kVectors; ++v) rank[v] = T(0.0F);
   for (int other = 0; other < kBlock; ++other) {
     const T theirs(out.score[other]);
     for (int v = 0; v < kVectors; ++v) {
-      const auto better = (theirs < score[v]) |
-                          ((theirs == score[v]) &
-                           (T(static_cast<float>(other)) < L::load(kEntries + v * L::kCount)));
+      const auto better =
+          (theirs < score[v]) | ((theirs == score[v]) &
+                                 (T(static_cast<float>(other)) < L::load(entries + v * L::kCount)));
       rank[v] = rank[v] + select(better, T(1.0F), T(0.0F));
     }
   }
@@ -203,12 +186,12 @@ void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float
   for (int v = 0; v < kVectors; ++v) {
     const int offset = v * L::kCount;
     const auto row = [&](int r) { return L::load(block + r * kBlock + offset); };
-    SeedFrame<T> sample = {{row(0), row(1), row(2)},
-                           {row(3), row(4), row(5)},
+    LaneFrame<T> sample = {{row(3), row(4), row(5)},
                            {row(6), row(7), row(8)},
-                           {row(9), row(10), row(11)}};
+                           {row(9), row(10), row(11)},
+                           {row(0), row(1), row(2)}};
     LeftOut<T> left_out;
-    SeedFrame<T> turned;
+    SeedTargetOf<T> turned;
     set_first(chain, target, sample, left_out);
     turn_back(target, left_out, turned);
     set_last(chain, turned, sample, left_out);

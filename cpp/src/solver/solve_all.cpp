@@ -94,11 +94,12 @@ std::vector<double> joint_values(const std::vector<Image>& images) {
 }
 
 /// Keeps `count` that lie far from each other, the first among them.
-void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
+void keep_apart(const lanes::LaneKernels& kernels, const JointSpace& joints, std::size_t count,
+                std::vector<Image>& images) {
   const std::vector<double> q = joint_values(images);
   std::vector<Image> kept;
   kept.reserve(count);
-  for (const std::size_t i : farthest_first(joints, q.data(), images.size(), count)) {
+  for (const std::size_t i : farthest_first(kernels, joints, q.data(), images.size(), count)) {
     kept.push_back(std::move(images[i]));
   }
   images = std::move(kept);
@@ -155,11 +156,11 @@ void take_first_of_each(std::size_t solutions, std::vector<Image>& images) {
 }
 
 /// The best of the images, in order, at most so many; true if there were more.
-bool take_best(const JointSpace& joints, std::size_t most, bool is_redundant,
-               std::vector<Image>& images) {
+bool take_best(const lanes::LaneKernels& kernels, const JointSpace& joints, std::size_t most,
+               bool is_redundant, std::vector<Image>& images) {
   if (images.size() <= most) return false;
   if (is_redundant) {
-    keep_apart(joints, most, images);
+    keep_apart(kernels, joints, most, images);
     std::sort(images.begin(), images.end(), cheaper);
   } else {
     images.resize(most);
@@ -211,7 +212,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
                images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  are_left_out |= take_best(goal.joints(), most, goal.is_redundant(), images);
+  are_left_out |= take_best(workspaces.kernels(), goal.joints(), most, goal.is_redundant(), images);
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simd/residual_types.hpp"
 #include "structure/closed_form.hpp"
 namespace iksel {
 namespace {

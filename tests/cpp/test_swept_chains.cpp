@@ -14,7 +14,6 @@
 #include "robots.hpp"
 #include "seeds/root_sweep.hpp"
 #include "simd/kernels.hpp"
-#include "simd/residual_types.hpp"
 #include "structure/closed_form.hpp"
 #include "structure/loop_equations.hpp"
 

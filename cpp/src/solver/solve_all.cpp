@@ -86,13 +86,6 @@ class SolutionRanking {
   JointVector from_;
 };
 
-/// The joint values of all, one after the other.
-std::vector<double> joint_values(const std::vector<Image>& images) {
-  std::vector<double> q;
-  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
-  return q;
-}
-
 /// Keeps `count` that lie far from each other, the first among them.
 void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
   const std::vector<double> q = joint_values(images);
@@ -125,21 +118,6 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
     }
   }
   return images;
-}
-
-/// Takes out what the filter refuses.
-void apply_filter(Screen& screen, std::vector<Image>& images) {
-  if (!screen.has_filter() || images.empty()) return;
-  const std::unique_ptr<bool[]> keep(new bool[images.size()]);
-  std::fill_n(keep.get(), images.size(), true);
-  screen.ask_filter(joint_values(images).data(), images.size(), keep.get());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (!keep[i]) continue;
-    if (kept != i) images[kept] = std::move(images[i]);
-    ++kept;
-  }
-  images.resize(kept);
 }
 
 /// Of the images of each solution, in order, the first.
@@ -194,8 +172,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   const std::size_t for_each = screen.is_set() ? kChoice : 1;
   const auto spread = static_cast<int>(for_each * std::min(most, SolutionSet::kMost / kChoice));
   const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
-  Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
-                   workspace.collected);
+  Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace);
 
   Solutions solutions = without_answers(search.result());
@@ -205,7 +182,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
   std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
   bool are_left_out = images.size() >= kMostImages;
-  apply_filter(screen, images);
+  screen.keep_passed(images, /*by_scene=*/false);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());

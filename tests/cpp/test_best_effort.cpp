@@ -34,7 +34,7 @@ TEST(BestEffort, EndsInsideTheLimits) {
     iksel::Pose target = robot.fk(q.row(i));
     target.linear() = robot.fk(q.row(i + 1)).linear();
     const iksel::Goal goal(robot.model(), task, target);
-    iksel::BestEffort effort(robot.model(), goal, 0.3);
+    iksel::BestEffort effort(goal, 0.3);
     for (const iksel::JointVector& start : {robot.upper(), robot.lower()}) {
       const iksel::JointVector end = effort.from(start);
       EXPECT_TRUE(robot.within_limits(end)) << end.transpose() << ", case " << i;

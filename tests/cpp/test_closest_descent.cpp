@@ -87,7 +87,7 @@ TEST(ClosestDescent, EndsWhereNoStepInsideTheLimitsLowersIt) {
       const Remainder remainder(goal, some_weights());
       JointVector end = q.row(2 * i + 1);
       int steps = 0;
-      const double value = descend_from_seed(robot.model(), remainder, 500, end, steps);
+      const double value = descend_from_seed(remainder, 500, end, steps);
       EXPECT_TRUE(robot.within_limits(end));
       EXPECT_NEAR(value, remainder.value(end), 1e-9 * (1 + value));
       EXPECT_LE(value, remainder.value(q.row(2 * i + 1)));

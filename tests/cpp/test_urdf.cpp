@@ -295,9 +295,8 @@ TEST(Urdf, LockedPandaSolvesInLanesAndAnswersForTheWholeArm) {
 
   const iksel::Solver solver(locked);
   EXPECT_EQ(solver.database().options().key_scheme, iksel::KeyScheme::reduced);
-  const iksel::Workspace workspace(locked.model(), locked.model(), solver.database().data(),
-                                   solver.options(), {}, nullptr, iksel::lanes::choose_kernels());
-  EXPECT_NE(workspace.lanes, nullptr);
+  const iksel::SharedBySearches shared(locked, locked, &solver.database(), solver.options());
+  EXPECT_TRUE(shared.in_lanes);
 
   const Eigen::MatrixXd q = locked.random_configurations(500, iksel_test::seed());
   std::size_t solved = 0;

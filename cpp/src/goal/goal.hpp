@@ -30,6 +30,7 @@ class Goal {
 
   /// Of several tips, what each has to reach; null if there is one.
   [[nodiscard]] const TipsGoal* tips() const { return tips_; }
+  [[nodiscard]] const RobotModel& robot() const { return robot_; }
   [[nodiscard]] const JointSpace& joints() const { return robot_.joints; }
   /// Of lengths, while joints are brought to the goal [m].
   [[nodiscard]] double unit() const { return robot_.unit; }

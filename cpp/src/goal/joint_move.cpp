@@ -23,8 +23,7 @@ std::optional<NearestTo> find_nearest_to(int dof, const SolveRequest& request) {
   }
   if (objective.kind != Objective::Kind::posture) return std::nullopt;
   JointVector from = objective.posture;
-  JointVector weights =
-      objective.weights.size() == 0 ? JointVector(JointVector::Ones(dof)) : objective.weights;
+  JointVector weights = weights_or_ones(objective.weights, dof);
   const double deciding = kDecides * weights.maxCoeff();
   for (int j = 0; j < dof; ++j) {
     if (weights[j] > 0) continue;

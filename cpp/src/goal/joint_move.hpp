@@ -10,12 +10,15 @@
 
 namespace iksel {
 
+/// Those that are given, or else 1 for each joint.
+inline JointVector weights_or_ones(const JointVector& weights, Eigen::Index dof) {
+  return weights.size() == 0 ? JointVector(JointVector::Ones(dof)) : weights;
+}
+
 class JointMove {
  public:
   JointMove(int dof, const AnswerCriteria& criteria)
-      : weights_(criteria.weights.size() == 0 ? JointVector(JointVector::Ones(dof))
-                                              : criteria.weights),
-        norm_(criteria.norm) {}
+      : weights_(weights_or_ones(criteria.weights, dof)), norm_(criteria.norm) {}
   explicit JointMove(JointVector weights, MoveNorm norm = MoveNorm::two)
       : weights_(std::move(weights)), norm_(norm) {}
 

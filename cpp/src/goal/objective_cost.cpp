@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
@@ -41,9 +40,7 @@ double manipulability(const RobotModel& model, const JointVector& q) {
 
 double ObjectiveCost::of_posture(const JointVector& q, JointVector* gradient,
                                  JointVector* curvature) const {
-  const JointVector weights = objective_.weights.size() == 0
-                                  ? JointVector(JointVector::Ones(model_.dof))
-                                  : objective_.weights;
+  const JointVector weights = weights_or_ones(objective_.weights, model_.dof);
   return MoveCost(weights, objective_.posture)(q, gradient, curvature);
 }
 

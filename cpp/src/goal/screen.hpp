@@ -37,6 +37,14 @@ inline SolveRequest in_turn(const SolveRequest& request, std::mutex& turn) {
   return locked;
 }
 
+/// The joint values `q` of all, one after the other.
+template <typename Each>
+std::vector<double> joint_values(const std::vector<Each>& all) {
+  std::vector<double> q;
+  for (const Each& each : all) q.insert(q.end(), each.q.begin(), each.q.end());
+  return q;
+}
+
 class Screen {
  public:
   /// `criteria` must outlive this.
@@ -47,7 +55,6 @@ class Screen {
         dof_(static_cast<std::size_t>(dof)) {}
 
   [[nodiscard]] bool is_set() const { return scene_ || static_cast<bool>(filter_); }
-  [[nodiscard]] bool has_filter() const { return static_cast<bool>(filter_); }
 
   /// Which of `count` configurations the scene lets through.
   void find_free(const double* q, std::size_t count, bool* free) const {
@@ -69,6 +76,19 @@ class Screen {
   void apply(const double* q, std::size_t count, bool* keep) {
     find_free(q, count, keep);
     ask_filter(q, count, keep);
+  }
+  /// Leaves what the filter lets through, and with `by_scene` the scene too.
+  template <typename Each>
+  void keep_passed(std::vector<Each>& all, bool by_scene) {
+    if (all.empty() || !(filter_ || (by_scene && scene_))) return;
+    const std::vector<double> q = joint_values(all);
+    const std::unique_ptr<bool[]> keep(new bool[all.size()]);
+    std::fill_n(keep.get(), all.size(), true);
+    if (by_scene) find_free(q.data(), all.size(), keep.get());
+    ask_filter(q.data(), all.size(), keep.get());
+    std::size_t i = 0;
+    all.erase(std::remove_if(all.begin(), all.end(), [&](const Each&) { return !keep[i++]; }),
+              all.end());
   }
   /// Why there is no answer, where all that were found were refused.
   [[nodiscard]] Status refusal() const {

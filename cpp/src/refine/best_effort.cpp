@@ -4,26 +4,15 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "iksel/result.hpp"
 
 namespace iksel {
-namespace {
 
-Vector6 weights_of(double rotation) {
-  Vector6 weights;
-  weights << 1, 1, 1, rotation, rotation, rotation;
-  return weights;
-}
-
-}  // namespace
-
-BestEffort::BestEffort(const RobotModel& model, const Goal& goal, double weight)
-    : model_(model), remainder_(goal, weights_of(weight)) {}
+BestEffort::BestEffort(const Goal& goal, double weight) : remainder_(goal, to_vector({}, weight)) {}
 
 JointVector BestEffort::from(const JointVector& seed) {
   JointVector q = seed;
   int steps = 0;
-  const double left = descend_from_seed(model_, remainder_, /*most=*/200, q, steps);
+  const double left = descend_from_seed(remainder_, /*most=*/200, q, steps);
   if (left < least_) {
     least_ = left;
     q_ = q;
@@ -31,7 +20,7 @@ JointVector BestEffort::from(const JointVector& seed) {
   return q;
 }
 
-bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVector& q) {
+bool descend_into_tolerances(const Goal& goal, JointVector& q) {
   constexpr int kSteps = 50;
   /// Weights of the rotation that are tried, each halving what is left between two others.
   constexpr int kRounds = 12;
@@ -46,12 +35,12 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
     q = seed;
     int steps = 0;
     // A position counts in metres, a rotation as many as the weight says.
-    const Remainder remainder(goal, weights_of(weight * position_tolerance / rotation_tolerance));
+    const Remainder remainder(goal,
+                              to_vector({}, weight * position_tolerance / rotation_tolerance));
     // An answer would have come to less than this.
     const double most = 0.5 * (1 + weight * weight) * position_tolerance * position_tolerance;
-    if (!(descend_from_seed(model, remainder, kSteps, q, steps) < most)) return false;
-    Result answer;
-    if (goal.check(q, answer)) return true;
+    if (!(descend_from_seed(remainder, kSteps, q, steps) < most)) return false;
+    if (goal.is_solution(q)) return true;
     double position = 0;
     double rotation = 0;
     goal.measure(q, position, rotation);
@@ -64,7 +53,8 @@ bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVec
 std::vector<JointVector> BestEffort::from_anywhere(int n, std::uint64_t seed) {
   Random random(seed);
   std::vector<JointVector> ends;
-  for (int i = 0; i < n; ++i) ends.push_back(from(model_.joints.sample(random)));
+  const JointSpace& joints = remainder_.goal().joints();
+  for (int i = 0; i < n; ++i) ends.push_back(from(joints.sample(random)));
   return ends;
 }
 

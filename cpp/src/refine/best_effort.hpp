@@ -16,7 +16,7 @@ inline constexpr int kEfforts = 24;
 class BestEffort {
  public:
   /// `weight` is the length that 1 rad counts [m].
-  BestEffort(const RobotModel& model, const Goal& goal, double weight);
+  BestEffort(const Goal& goal, double weight);
 
   /// Where it ended.
   JointVector from(const JointVector& seed);
@@ -25,7 +25,6 @@ class BestEffort {
   [[nodiscard]] const JointVector& q() const { return q_; }
 
  private:
-  const RobotModel& model_;
   Remainder remainder_;
   double least_ = kInfinity;
   JointVector q_;
@@ -34,6 +33,6 @@ class BestEffort {
 /// Moves q, which is near to a solution, to where it is an answer inside the limits, if it finds
 /// such a place: at a limit the tolerances may be needed to their edge, of position and of rotation
 /// each.
-bool descend_into_tolerances(const ChainModel& model, const Goal& goal, JointVector& q);
+bool descend_into_tolerances(const Goal& goal, JointVector& q);
 
 }  // namespace iksel

@@ -3,13 +3,15 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 namespace iksel {
 namespace {
 
 /// Longest step of a joint [rad or m].
 constexpr double kLongestDescent = 0.5;
+/// Ends that differ by less are the same: in their remainders, relative to them, or in all joints
+/// [rad or m].
+constexpr double kSameEnd = 1e-9;
 
 /// Leaves out what would leave limits that q stands at.
 void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
@@ -64,11 +66,11 @@ struct Slope {
 
 /// A step of Newton's method from q that lowers the remainder, damped as it must be: false if there
 /// is none.
-bool step_down(const RobotModel& model, const Remainder& remainder, const Slope& at,
-               double& damping, JointVector& q) {
+bool step_down(const Remainder& remainder, const Slope& at, double& damping, JointVector& q) {
   constexpr double kNothing = 1e-14;
   constexpr double kLeastDamping = 1e-10;
   constexpr double kMostDamping = 1e6;
+  const JointSpace& joints = remainder.goal().joints();
   const JointVector scale = at.diagonal.array() + 1e-6 * at.diagonal.maxCoeff() + 1e-12;
   // Nothing to be gained, even along directions in which it is nearly flat.
   const double gain = 0.5 * at.gradient.cwiseAbs2().cwiseQuotient(scale).sum();
@@ -77,10 +79,10 @@ bool step_down(const RobotModel& model, const Remainder& remainder, const Slope&
     SquareMatrix damped = at.H;
     damped.diagonal() += damping * scale;
     JointVector step;
-    if (!step_inside(model.joints, q, at.gradient, damped, step)) continue;
+    if (!step_inside(joints, q, at.gradient, damped, step)) continue;
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestDescent) step *= kLongestDescent / longest;
-    const JointVector next = model.joints.clamp(q + step);
+    const JointVector next = joints.clamp(q + step);
     if (!(remainder.value(next) < at.value)) continue;
     q = next;
     damping = std::max(damping * 1e-3, kLeastDamping);
@@ -114,15 +116,15 @@ bool find_falling(const SquareMatrix& H, JointVector& v) {
 /// Leaves a point where the gradient is nothing, but the remainder falls to both sides: an arm
 /// stretched out towards a target that has come back within reach. Goes to the side of the middle
 /// of the limits, if it falls there. False if there is no such side.
-bool leave_saddle(const RobotModel& model, const Remainder& remainder, const Slope& at,
-                  JointVector& q) {
+bool leave_saddle(const Remainder& remainder, const Slope& at, JointVector& q) {
   constexpr double kWorthIt = 1e-3;
+  const JointSpace& joints = remainder.goal().joints();
   JointVector side;
   if (!find_falling(at.H, side)) return false;
-  if (side.dot(model.joints.middle() - q) < 0) side = -side;
+  if (side.dot(joints.middle() - q) < 0) side = -side;
   for (const double length : {0.1, 0.01, 0.001}) {
     for (const double sign : {1.0, -1.0}) {
-      const JointVector next = model.joints.clamp(q + sign * length * side);
+      const JointVector next = joints.clamp(q + sign * length * side);
       if (!(remainder.value(next) < at.value * (1 - kWorthIt))) continue;
       q = next;
       return true;
@@ -133,28 +135,27 @@ bool leave_saddle(const RobotModel& model, const Remainder& remainder, const Slo
 
 }  // namespace
 
-double descend_to_closest(const RobotModel& model, const Remainder& remainder, int most,
-                          JointVector& q, int& steps, double best) {
-  constexpr double kSettled = 1e-9;
-  JointVector gradient(model.dof);
-  JointVector diagonal(model.dof);
+double descend_to_closest(const Remainder& remainder, int most, JointVector& q, int& steps,
+                          double best) {
+  JointVector gradient(q.size());
+  JointVector diagonal(q.size());
   SquareMatrix H;
-  double value = remainder.value(q, gradient, diagonal, &H);
-  hold_at_limits(model.joints, q, gradient, H);
+  double value = 0;
+  const auto look = [&] {
+    value = remainder.value(q, gradient, diagonal, &H);
+    hold_at_limits(remainder.goal().joints(), q, gradient, H);
+  };
+  look();
   double damping = 1e-4;
   for (int taken = 0; taken < most; ++taken) {
     const JointVector from = q;
-    const bool is_lower = step_down(model, remainder, {value, gradient, diagonal, H}, damping, q);
-    const auto look = [&] {
-      value = remainder.value(q, gradient, diagonal, &H);
-      hold_at_limits(model.joints, q, gradient, H);
-    };
+    const bool is_lower = step_down(remainder, {value, gradient, diagonal, H}, damping, q);
     const double before = value;
     if (is_lower) look();
-    const bool is_settled = !is_lower || before - value <= kSettled * value ||
-                            (q - from).cwiseAbs().maxCoeff() < kSettled;
+    const bool is_settled = !is_lower || before - value <= kSameEnd * value ||
+                            (q - from).cwiseAbs().maxCoeff() < kSameEnd;
     if (is_settled) {
-      if (!leave_saddle(model, remainder, {value, gradient, diagonal, H}, q)) return value;
+      if (!leave_saddle(remainder, {value, gradient, diagonal, H}, q)) return value;
       look();
     }
     ++steps;
@@ -163,17 +164,16 @@ double descend_to_closest(const RobotModel& model, const Remainder& remainder, i
   return value;
 }
 
-double descend_from_seed(const RobotModel& model, const Remainder& remainder, int most,
-                         JointVector& q, int& steps, double best) {
-  /// Remainders that differ by less, relative to them, are the same.
-  constexpr double kSame = 1e-9;
-  q = model.joints.clamp(q);
-  const double value = descend_to_closest(model, remainder, most, q, steps, best);
+double descend_from_seed(const Remainder& remainder, int most, JointVector& q, int& steps,
+                         double best) {
+  const JointSpace& joints = remainder.goal().joints();
+  q = joints.clamp(q);
+  const double value = descend_to_closest(remainder, most, q, steps, best);
   // Whole turns matter only to joints that follow the one that took them.
   JointVector principal = q;
-  model.joints.wrap(principal.data());
+  joints.wrap(principal.data());
   if (principal == q) return value;
-  if (remainder.value(principal) <= value * (1 + kSame) + kSame * kSame) q = principal;
+  if (remainder.value(principal) <= value * (1 + kSameEnd) + kSameEnd * kSameEnd) q = principal;
   return value;
 }
 

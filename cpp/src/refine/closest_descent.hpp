@@ -14,12 +14,12 @@ inline constexpr double kHopefulSteps = 30;
 /// the limits as an active set (Bertsekas: "Projected Newton methods", SIAM J. Control and
 /// Optimization 20, 1982) and damped as Levenberg-Marquardt. Given up where it will most likely not
 /// come below `best`. Returns the remainder there; `steps` counts those taken.
-double descend_to_closest(const RobotModel& model, const Remainder& remainder, int most,
-                          JointVector& q, int& steps, double best = kInfinity);
+double descend_to_closest(const Remainder& remainder, int most, JointVector& q, int& steps,
+                          double best = kInfinity);
 
 /// The same from a seed that may lie anywhere, without the turns that joints took on the way.
-double descend_from_seed(const RobotModel& model, const Remainder& remainder, int most,
-                         JointVector& q, int& steps, double best = kInfinity);
+double descend_from_seed(const Remainder& remainder, int most, JointVector& q, int& steps,
+                         double best = kInfinity);
 
 /// Descents from seeds at random, where there are no lanes to find better ones.
 inline constexpr int kRandomDescents = 48;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refine/lane_refiner.hpp"
 
-#include "base/constants.hpp"
-#include "simd/lane_chain.hpp"
+#include <algorithm>
 
 namespace iksel {
 namespace {
@@ -69,8 +68,16 @@ void LaneRefiner::make_task(const TaskSpace& task) {
   for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3) * per_metre_;
 }
 
-template <typename Write>
-void LaneRefiner::make_rows(const Pose& T_base_tcp, const Write& write) const {
+void LaneRefiner::set_target(const Pose& Y, const Pose& T_base_tcp, int first, int count) {
+  const auto write = [&](int row, double value) {
+    std::fill_n(&pack_.target[row][first], count, value);
+  };
+  if (task_ == nullptr) {
+    for (int row = 0; row < lanes::kFullPoseRows; ++row) {
+      write(row, full_pose_row(Y, row, per_metre_));
+    }
+    return;
+  }
   const auto write_columns = [&](int at, const Eigen::Matrix3d& columns) {
     for (int k = 0; k < 9; ++k) write(at + k, columns(k % 3, k / 3));
   };
@@ -80,27 +87,6 @@ void LaneRefiner::make_rows(const Pose& T_base_tcp, const Write& write) const {
   for (int i = 0; i < 3; ++i) write(i, X(i, 3) * per_metre_);
   write_columns(3, W);
   write_columns(12, tip_.linear() * X.linear().transpose() * W);
-}
-
-void LaneRefiner::set_pose(const Pose& Y) {
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    std::fill_n(pack_.target[row], lanes::kWidth, full_pose_row(Y, row, per_metre_));
-  }
-}
-
-void LaneRefiner::set_pose(int lane, const Pose& Y) {
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row][lane] = full_pose_row(Y, row, per_metre_);
-  }
-}
-
-void LaneRefiner::set_task(const Pose& T_base_tcp) {
-  make_rows(T_base_tcp,
-            [&](int row, double value) { std::fill_n(pack_.target[row], lanes::kWidth, value); });
-}
-
-void LaneRefiner::set_task(int lane, const Pose& T_base_tcp) {
-  make_rows(T_base_tcp, [&](int row, double value) { pack_.target[row][lane] = value; });
 }
 
 void LaneRefiner::load_seed(int lane, const double* q) {

@@ -2,7 +2,7 @@
 // Seeds brought nearer to their goals in SIMD lanes, by Levenberg-Marquardt.
 #pragma once
 
-#include <algorithm>
+#include <limits>
 
 #include "base/constants.hpp"
 #include "goal/task_space.hpp"
@@ -27,6 +27,24 @@ struct Patience {
   int stalls = 0;
 };
 
+inline constexpr int kMostIterations = std::numeric_limits<int>::max();
+/// Of a seed that is held by a limit beside an answer the error stays as it is: beside a fold,
+/// where steps are slowest, its square falls to a sixteenth each time.
+inline constexpr int kStalled = 2;
+/// Where any answer will do.
+inline constexpr Patience kFirst{8, kMostIterations};
+/// The same before roots or a sweep, which find what a slow seed would have: a pose of random arms
+/// without an answer waits an eighth less, one that can be reached as long, and none is lost
+/// (python -m bench lost --random 20 --targets 20000).
+inline constexpr Patience kBeforeFamilies{5, kMostIterations, 0, kStalled};
+/// Where a seed more or less does not matter: solutions arrive after 4 iterations in the mean, and
+/// what is far off after 6 costs more than what it finds.
+inline constexpr Patience kAll{6, kMostIterations, 2};
+/// Where seeds were iterated before in single precision.
+inline constexpr Patience kScreened{4, kMostIterations, 0, kStalled};
+/// Where seeds are answers, or as near to one as a singularity or a limit lets it be told.
+inline constexpr Patience kNearAnswer{8, 64, 0, kStalled};
+
 /// Whether as few lanes as give an answer soonest, or as many as do most (lane_types.hpp).
 enum class Width { narrow, wide };
 
@@ -39,11 +57,9 @@ class LaneRefiner {
   /// Before a search for goals of one task, which has to outlive it.
   void begin(const TaskSpace& task, const Patience& patience, Width width);
 
-  /// What all lanes are to reach, or one: a full pose by its Y (reduction.hpp), or a task.
-  void set_pose(const Pose& Y);
-  void set_pose(int lane, const Pose& Y);
-  void set_task(const Pose& T_base_tcp);
-  void set_task(int lane, const Pose& T_base_tcp);
+  /// What all lanes are to reach, or `count` of them from `first` on: of a full pose Y
+  /// (reduction.hpp) is read, of a task the pose of the TCP.
+  void set_target(const Pose& Y, const Pose& T_base_tcp, int first = 0, int count = lanes::kWidth);
 
   /// Starts a lane at `value(joint)`, inside the limits.
   template <typename Value>
@@ -55,7 +71,7 @@ class LaneRefiner {
     there_ &= ~(1U << static_cast<unsigned>(lane));  // of a search that ended before advance()
     pack_.error2[lane] = kInfinity;                  // not measured yet
     age_[lane] = 0;
-    next_look_[lane] = patience_.look > 0 ? patience_.look : kNever;
+    next_look_[lane] = patience_.look > 0 ? patience_.look : kMostIterations;
     refused_error2_[lane] = kInfinity;
     stalls_[lane] = 0;
   }
@@ -67,7 +83,7 @@ class LaneRefiner {
     there_ |= 1U << static_cast<unsigned>(lane);
   }
   /// The lane's seed is followed to its end wherever it is heading.
-  void follow(int lane) { next_look_[lane] = kNever; }
+  void follow(int lane) { next_look_[lane] = kMostIterations; }
 
   /// Iterates the lanes of the mask `busy` until one arrives, or is to be looked at or given up.
   /// Returns the iterations.
@@ -77,9 +93,8 @@ class LaneRefiner {
   }
   /// What arrived is no answer yet: notes it, and returns whether it stays there.
   bool stays(int lane) {
-    constexpr double kHalf2 = 0.25;
     const double error2 = pack_.error2[lane];
-    stalls_[lane] = error2 > kHalf2 * refused_error2_[lane] ? stalls_[lane] + 1 : 0;
+    stalls_[lane] = error2 > 0.25 * refused_error2_[lane] ? stalls_[lane] + 1 : 0;
     refused_error2_[lane] = error2;
     return patience_.stalls > 0 && stalls_[lane] >= patience_.stalls;
   }
@@ -113,12 +128,7 @@ class LaneRefiner {
  private:
   /// Brings a lane's seed inside the limits, by whole turns and along sums.
   void hold_sums(int lane);
-  /// Writes the rows of a task's target, each by write(row, value).
-  template <typename Write>
-  void make_rows(const Pose& T_base_tcp, const Write& write) const;
   void make_task(const TaskSpace& task);
-
-  static constexpr int kNever = 1 << 30;
 
   const lanes::LaneKernels& kernels_;
   const lanes::PackKernels* packs_;

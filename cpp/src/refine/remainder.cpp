@@ -24,6 +24,16 @@ SquareMatrix difference_gradients(const Remainder& remainder, const JointVector&
 
 }  // namespace
 
+Vector6 to_vector(const PoseWeights& weights, double rotation) {
+  Vector6 all;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    all[row] = weights.position[i];
+    all[row + 3] = weights.rotation ? (*weights.rotation)[i] : rotation;
+  }
+  return all;
+}
+
 double Remainder::value_of_tips(const JointVector& q, JointVector* gradient,
                                 JointVector* diagonal) const {
   const TipsGoal& tips = *goal_.tips();

@@ -3,12 +3,17 @@
 #pragma once
 
 #include "goal/goal.hpp"
+#include "iksel/request.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
 
 using SquareMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxDof, kMaxDof>;
+
+/// The weights of position [1/m] and rotation [1/rad].
+/// `rotation`: those that are not given [1/rad].
+Vector6 to_vector(const PoseWeights& weights, double rotation);
 
 /// How far a configuration is from a goal: half the squared length of what is missing, each part of
 /// it times its weight; of several tips, what is missing of all.
@@ -23,6 +28,7 @@ class Remainder {
         is_simple_(goal.tips() == nullptr && is_simple(model_)),
         turns_alike_((weights2_.tail<3>().array() == weights2_[3]).all()) {}
 
+  [[nodiscard]] const Goal& goal() const { return goal_; }
   [[nodiscard]] double value(const JointVector& q) const;
   /// Also its gradient, and the Gauss-Newton approximation's diagonal of the second derivative.
   double value(const JointVector& q, JointVector& gradient, JointVector& diagonal) const {

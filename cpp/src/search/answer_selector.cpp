@@ -23,15 +23,13 @@ constexpr std::size_t kSingularDescents = 16;
 
 }  // namespace
 
-AnswerSelector::AnswerSelector(const RobotModel& model, const Goal& goal,
-                               const SolveRequest& request, const SolutionSet& found,
-                               Screen& screen)
-    : model_(model),
-      goal_(goal),
+AnswerSelector::AnswerSelector(const Goal& goal, const SolveRequest& request,
+                               const SolutionSet& found, Screen& screen)
+    : goal_(goal),
       request_(request),
       ranks_(ranks_answers(request)),
       found_(found),
-      nearest_to_(find_nearest_to(model.dof, request)),
+      nearest_to_(find_nearest_to(goal.robot().dof, request)),
       screen_(screen) {}
 
 bool AnswerSelector::is_satisfied(const Collector& search) {
@@ -84,7 +82,7 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
 double AnswerSelector::cost_of(const JointVector& q) const {
   if (!ranks_) return 0;
   if (nearest_to_) return nearest_to_->move.length(q - nearest_to_->from);
-  return ObjectiveCost(model_, request_.objective).value(q);
+  return ObjectiveCost(goal_.robot(), request_.objective).value(q);
 }
 
 void AnswerSelector::screen_new() {
@@ -116,14 +114,14 @@ void AnswerSelector::descend(JointVector& q) {
     steps_ += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
   } else {
     constexpr int kObjectiveSteps = 50;
-    const ObjectiveCost cost(model_, request_.objective);
+    const ObjectiveCost cost(goal_.robot(), request_.objective);
     steps_ += descend_self_motion(goal_, JointCost(cost), kObjectiveSteps, q);
   }
 }
 
 bool AnswerSelector::select_image(double best, JointVector& q) {
   constexpr std::size_t kChunk = 64;
-  const auto dof = static_cast<std::size_t>(model_.dof);
+  const auto dof = static_cast<std::size_t>(goal_.robot().dof);
   std::array<double, kChunk* static_cast<std::size_t>(kMaxDof)> images{};
   std::size_t count = 0;
   bool any = false;
@@ -133,7 +131,7 @@ bool AnswerSelector::select_image(double best, JointVector& q) {
     screen_.ask_filter(images.data(), count, keep.data());
     for (std::size_t i = 0; i < count; ++i) {
       const JointVector image =
-          Eigen::Map<const Eigen::VectorXd>(images.data() + i * dof, model_.dof);
+          Eigen::Map<const Eigen::VectorXd>(images.data() + i * dof, goal_.robot().dof);
       const double cost = cost_of(image);
       if (!keep[i] || !(cost < best)) continue;
       best = cost;
@@ -146,14 +144,14 @@ bool AnswerSelector::select_image(double best, JointVector& q) {
     // Whole turns change nothing about a collision.
     if (!free_[i]) continue;
     std::size_t left = kMostImages / found_.size();
-    model_.joints.visit_images(found_.at(i), [&](const JointVector& image) {
+    goal_.joints().visit_images(found_.at(i), [&](const JointVector& image) {
       if (cost_of(image) < best && goal_.is_solution(image)) {
         std::copy_n(image.data(), dof, images.data() + count * dof);
         if (++count == kChunk) flush();
       }
       return --left > 0;
     });
-    leaves_out_ = leaves_out_ || left == 0 || !model_.joints.upper.allFinite();
+    leaves_out_ = leaves_out_ || left == 0 || !goal_.joints().upper.allFinite();
   }
   flush();
   return any;

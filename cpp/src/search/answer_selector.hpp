@@ -16,8 +16,8 @@ namespace iksel {
 class AnswerSelector {
  public:
   /// All must outlive this.
-  AnswerSelector(const RobotModel& model, const Goal& goal, const SolveRequest& request,
-                 const SolutionSet& found, Screen& screen);
+  AnswerSelector(const Goal& goal, const SolveRequest& request, const SolutionSet& found,
+                 Screen& screen);
 
   /// Screens what was found since the last look. True if the best of all that passed
   /// is an answer.
@@ -52,7 +52,6 @@ class AnswerSelector {
   /// what it was.
   bool select_image(double best, JointVector& q);
 
-  const RobotModel& model_;
   const Goal& goal_;
   const SolveRequest& request_;
   /// Whether some answers are better than others.

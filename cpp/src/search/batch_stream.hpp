@@ -26,11 +26,7 @@ class LeafLanes {
   /// The lane's target from now on. Y (reduction.hpp) is that of the pose nearest to it that the
   /// task allows.
   void begin(LaneRefiner& refiner, int lane, const Goal& goal, const Pose& Y) {
-    if (goal.is_full_pose()) {
-      refiner.set_pose(lane, Y);
-    } else {
-      refiner.set_task(lane, goal.target());
-    }
+    refiner.set_target(Y, goal.target(), lane, 1);
     lanes_[lane] = {Y, 0};
   }
   /// Starts the lane at the target's next seed; false if there are no more.

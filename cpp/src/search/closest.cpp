@@ -2,7 +2,6 @@
 #include "search/closest.hpp"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "base/constants.hpp"
@@ -33,12 +32,11 @@ constexpr double kSameRemainder = 1e-6;
 /// Local minima of what is missing, from seeds of all kinds.
 class Minima {
  public:
-  Minima(const RobotModel& model, const Remainder& remainder, const SolveRequest& request,
-         std::vector<LocalMinimum>& found, Result& result)
-      : model_(model),
-        remainder_(remainder),
+  Minima(const Remainder& remainder, const SolveRequest& request, std::vector<LocalMinimum>& found,
+         Result& result)
+      : remainder_(remainder),
         request_(request),
-        move_(model.dof, request),
+        move_(remainder.goal().robot().dof, request),
         only_best_counts_(!request.near && !screens_answers(request)),
         found_(found),
         result_(result) {
@@ -47,12 +45,11 @@ class Minima {
 
   void descend(const JointVector& seed) {
     LocalMinimum end{0, 0, static_cast<int>(found_.size()), seed};
-    end.remainder =
-        descend_from_seed(model_, remainder_, kDescentSteps, end.q, result_.iterations, best_);
+    end.remainder = descend_from_seed(remainder_, kDescentSteps, end.q, result_.iterations, best_);
     if (only_best_counts_) best_ = std::min(best_, end.remainder);
     ++result_.attempts;
     if (request_.near) {
-      model_.joints.wrap_nearest(
+      remainder_.goal().joints().wrap_nearest(
           *request_.near, 0, [&](const JointVector& d) { return move_.length(d); }, end.q);
       end.move = move_.length(end.q - *request_.near);
     }
@@ -82,7 +79,6 @@ class Minima {
   }
 
  private:
-  const RobotModel& model_;
   const Remainder& remainder_;
   const SolveRequest& request_;
   JointMove move_;
@@ -94,8 +90,8 @@ class Minima {
 };
 
 /// The seeds of the screen that are worth it.
-void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector6& weights,
-                         Workspace::InLanes& lanes, Minima& minima, Result& result) {
+void descend_from_screen(const Goal& goal, const Vector6& weights, Workspace::InLanes& lanes,
+                         Minima& minima, Result& result) {
   ClosestScreen& screen = lanes.closest;
   screen.find(goal, weights, lanes.query);
   const bool is_almost_reached = screen.remainder(0) < kAlmost;
@@ -109,7 +105,7 @@ void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector
     if (minima.only_best_counts() && expected > screen.remainder(0) + kRounding) continue;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
-      return model.joints.are_near(seed, other, kSameSeed);
+      return goal.joints().are_near(seed, other, kSameSeed);
     });
     if (is_known) continue;
     tried[count++] = seed;
@@ -123,16 +119,6 @@ void descend_from_screen(const RobotModel& model, const Goal& goal, const Vector
 
 }  // namespace
 
-Vector6 to_vector(const PoseWeights& weights, double rotation) {
-  Vector6 all;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    all[row] = weights.position[i];
-    all[row + 3] = weights.rotation ? (*weights.rotation)[i] : rotation;
-  }
-  return all;
-}
-
 void set_closest(const Goal& goal, const JointVector& q, Result& result) {
   // What searches have missed.
   if (goal.check(q, result)) {
@@ -144,21 +130,20 @@ void set_closest(const Goal& goal, const JointVector& q, Result& result) {
   goal.measure(q, result.position_error, result.rotation_error);
 }
 
-void give_closest(const RobotModel& model, const SolverOptions& options, const Goal& goal,
-                  const SolveRequest& request, const Vector6& weights, Workspace& workspace,
-                  Result& result) {
+void give_closest(const SolverOptions& options, const Goal& goal, const SolveRequest& request,
+                  const Vector6& weights, Workspace& workspace, Result& result) {
   const Remainder remainder(goal, weights);
-  Minima minima(model, remainder, request, workspace.minima, result);
+  Minima minima(remainder, request, workspace.minima, result);
   if (request.near) minima.descend(*request.near);
   const auto given = std::min(request.seeds.size(), static_cast<std::size_t>(options.max_attempts));
   for (std::size_t i = 0; i < given; ++i) minima.descend(request.seeds[i]);
   if (request.database_seeds && workspace.lanes) {
-    descend_from_screen(model, goal, weights, *workspace.lanes, minima, result);
+    descend_from_screen(goal, weights, *workspace.lanes, minima, result);
   } else if (request.database_seeds) {
     Random random(options.seed);
-    for (int i = 0; i < kRandomDescents; ++i) minima.descend(model.joints.sample(random));
+    for (int i = 0; i < kRandomDescents; ++i) minima.descend(goal.joints().sample(random));
   }
-  Screen screen(request, model.dof);
+  Screen screen(request, goal.robot().dof);
   for (const LocalMinimum& minimum : minima.sorted()) {
     bool keep = true;
     screen.apply(minimum.q.data(), 1, &keep);

@@ -6,15 +6,10 @@
 
 namespace iksel {
 
-/// The weights of position [1/m] and rotation [1/rad].
-/// `rotation`: those that are not given [1/rad].
-Vector6 to_vector(const PoseWeights& weights, double rotation);
-
 /// Makes a failure the nearest configuration that the request's scene and filter take, if there is
 /// one.
-void give_closest(const RobotModel& model, const SolverOptions& options, const Goal& goal,
-                  const SolveRequest& request, const Vector6& weights, Workspace& workspace,
-                  Result& result);
+void give_closest(const SolverOptions& options, const Goal& goal, const SolveRequest& request,
+                  const Vector6& weights, Workspace& workspace, Result& result);
 
 /// Measures q, which is nearest to a goal, into the result.
 void set_closest(const Goal& goal, const JointVector& q, Result& result);

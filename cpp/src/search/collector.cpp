@@ -41,23 +41,23 @@ JointVector wanted_images(const JointSpace& joints, const SolveRequest& request,
 
 }  // namespace
 
-Collector::Collector(const RobotModel& model, const Goal& goal, const SolveRequest& request,
-                     const Aim& aim, FunctionRef<bool(const Collector&)> is_satisfied,
-                     int max_attempts, CollectorMemory& memory)
+Collector::Collector(const Goal& goal, const SolveRequest& request, const Aim& aim,
+                     FunctionRef<bool(const Collector&)> is_satisfied, int max_attempts,
+                     CollectorMemory& memory)
     : SearchState(goal, request, max_attempts),
-      model_(model),
+      model_(goal.robot()),
       aim_(aim),
       is_satisfied_(is_satisfied),
       found_(memory.found),
       partners_(memory.partners),
-      nearest_to_(find_nearest_to(model.dof, request)),
+      nearest_to_(find_nearest_to(model_.dof, request)),
       coaxial_(wants_nearest() && memory.coaxial && memory.coaxial->has_any() ? &*memory.coaxial
                                                                               : nullptr),
-      images_near_(wanted_images(model.joints, request, nearest_to_)),
+      images_near_(wanted_images(model_.joints, request, nearest_to_)),
       // What a filter has been asked about stays as it is.
       counts_moves_(nearest_to_ && !screens_answers(request)),
-      comes_in_pairs_(goal.is_full_pose() && model.dof <= 6),
-      basin_radius_(goal.is_full_pose() && model.dof <= 6 ? kBasinRadius : 0.0) {
+      comes_in_pairs_(goal.is_full_pose() && model_.dof <= 6),
+      basin_radius_(goal.is_full_pose() && model_.dof <= 6 ? kBasinRadius : 0.0) {
   found_.clear();
   partners_.clear();
 }
@@ -105,8 +105,7 @@ void Collector::keep_nearer(Result answer) {
 }
 
 void Collector::offer_near() {
-  Result stays;
-  if (!request_.near || !goal_.check(*request_.near, stays)) return;
+  if (!request_.near || !goal_.is_solution(*request_.near)) return;
   JointVector q = *request_.near;
   offer(0, q);
 }

@@ -46,7 +46,7 @@ class Collector : public SearchState {
   };
 
   /// `is_satisfied` is asked between stages. All must outlive this.
-  Collector(const RobotModel& model, const Goal& goal, const SolveRequest& request, const Aim& aim,
+  Collector(const Goal& goal, const SolveRequest& request, const Aim& aim,
             FunctionRef<bool(const Collector&)> is_satisfied, int max_attempts,
             CollectorMemory& memory);
 

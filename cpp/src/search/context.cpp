@@ -11,10 +11,6 @@ namespace iksel {
 
 namespace {
 
-bool solves_in_lanes(const DatabaseData& data, const SolverOptions& options) {
-  return std::holds_alternative<Lanes>(options.strategy) && data.reduction != nullptr;
-}
-
 /// Those of the nominal chain that tell which solutions lie inside the model's limits.
 ClosedForms closed_forms_of(const ChainModel& model, const ChainModel& nominal) {
   ClosedForms forms = ClosedForms::of(nominal);
@@ -29,17 +25,23 @@ ClosedForms closed_forms_of(const ChainModel& model, const ChainModel& nominal) 
 
 }  // namespace
 
-Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
-                            const DatabaseData& data, const SolverOptions& options,
-                            const ClosedForms& closed_forms, const BranchTrials* trials,
-                            const lanes::LaneKernels& kernels)
-    : refiner(model, options, kernels),
-      query(model, nominal, data, neighbours_of(options.strategy), kernels),
-      screen(model, options, kernels),
-      closest(model, options.seed, kernels) {
-  const bool is_nominal = &model == &nominal;
-  const double position = options.position_tolerance;
-  const double rotation = options.rotation_tolerance;
+Workspace::InLanes::InLanes(const SharedBySearches& shared)
+    : refiner(shared.robot.model(), shared.options, shared.kernels),
+      query(shared.robot.model(), shared.nominal.model(), shared.database->data(),
+            neighbours_of(shared.options.strategy), shared.kernels),
+      screen(shared.robot.model(), shared.options, shared.kernels),
+      closest(shared.robot.model(), shared.options.seed, shared.kernels) {
+  const ChainModel& model = shared.robot.model();
+  const lanes::LaneKernels& kernels = shared.kernels;
+  const ClosedForms& closed_forms = shared.closed_forms;
+  const bool is_nominal = shared.is_nominal();
+  const double position = shared.options.position_tolerance;
+  const double rotation = shared.options.rotation_tolerance;
+  for (const Held::Arm& arm : shared.held_arms) held.emplace_back(model, arm, kernels);
+  if (shared.has_curve) curve.emplace(model, kernels);
+  if (!shared.locked_arms.arms.empty()) {
+    ends.emplace(model, shared.locked_arms, position, rotation, kernels);
+  }
   for (const auto& [task, chain] : closed_forms.tasks) {
     task_branches.emplace_back(task,
                                Enumeration(model, chain, is_nominal, position, rotation, kernels));
@@ -58,12 +60,12 @@ Workspace::InLanes::InLanes(const ChainModel& model, const ChainModel& nominal,
   if (!closed_form) return;
   if (closed_form->held < 0) {
     branches.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
-    if (trials != nullptr) branch_lanes.emplace(model, branches->chain(), *trials, kernels);
+    if (shared.trials) branch_lanes.emplace(model, branches->chain(), *shared.trials, kernels);
   } else {
     sweep.emplace(model, *closed_form, is_nominal, position, rotation, kernels);
     nearest_on_curve.emplace(model, *closed_form, is_nominal, kernels);
     curve.emplace(model, kernels);
-    if (trials != nullptr) branch_lanes.emplace(model, *closed_form, *trials, kernels);
+    if (shared.trials) branch_lanes.emplace(model, *closed_form, *shared.trials, kernels);
   }
 }
 
@@ -75,100 +77,72 @@ Enumeration* Workspace::InLanes::branches_of(const TaskSpace& task) {
   return nullptr;
 }
 
-Workspace::OneAtATime::OneAtATime(const ChainModel& model, const ChainModel& nominal,
-                                  const DatabaseData& data, const SolverOptions& options,
-                                  const Paper& scheme)
-    : refiner(model, scheme, options.max_iterations),
-      selection(&model, &nominal, data, scheme),
-      task_samples(model, data, selection) {}
+Workspace::OneAtATime::OneAtATime(const SharedBySearches& shared, const Paper& scheme)
+    : selection(&shared.robot.model(), &shared.nominal.model(), shared.database->data(), scheme),
+      task_samples(shared.robot.model(), shared.database->data(), selection) {
+  if (scheme.kinematics != Kinematics::kdl) return;
+  kdl_tip = shared.robot.model().make_kdl(Pose::Identity());
+  kdl_tcp = shared.robot.model().make_kdl();
+}
 
-Workspace::Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-                     const SolverOptions& options, const ClosedForms& closed_forms,
-                     const BranchTrials* trials, const lanes::LaneKernels& kernels)
-    : scheme(iksel::one_at_a_time(options.strategy)),
-      given(model, scheme, data.options.pinv_cutoff),
-      collected(model) {
+Workspace::Workspace(const SharedBySearches& shared)
+    : scheme(iksel::one_at_a_time(shared.options.strategy)),
+      given(shared.robot.all(), scheme,
+            shared.database != nullptr ? shared.database->data().options.pinv_cutoff : 0),
+      collected(shared.robot.all()) {
   minima.reserve(kRandomDescents + 1);
-  collected.coaxial.emplace(model);
-  if (solves_in_lanes(data, options)) {
-    lanes = std::make_unique<InLanes>(model, nominal, data, options, closed_forms, trials, kernels);
+  if (shared.database == nullptr) return;
+  collected.coaxial.emplace(shared.robot.model());
+  if (shared.in_lanes) {
+    lanes = std::make_unique<InLanes>(shared);
   } else {
-    one_at_a_time = std::make_unique<OneAtATime>(model, nominal, data, options, scheme);
+    one_at_a_time = std::make_unique<OneAtATime>(shared, scheme);
   }
 }
 
-Workspace::Workspace(const RobotModel& several, const SolverOptions& options)
-    : scheme(iksel::one_at_a_time(options.strategy)),
-      given(several, scheme, /*cutoff=*/0),
-      collected(several) {
-  minima.reserve(kRandomDescents + 1);
+SharedBySearches::SharedBySearches(const Robot& robot_in, const Robot& nominal_in,
+                                   const Database* database_in, const SolverOptions& options_in)
+    : robot(robot_in), nominal(nominal_in), database(database_in), options(options_in) {
+  if (database == nullptr) return;
+  const ChainModel& model = robot.model();
+  in_lanes =
+      std::holds_alternative<Lanes>(options.strategy) && database->data().reduction != nullptr;
+  closed_forms = closed_forms_of(model, nominal.model());
+  if (!in_lanes) return;
+  if (is_nominal()) held_arms = Held::arms_of(model);
+  const auto& chain = closed_forms.pose;
+  has_curve =
+      !chain && robot.dof() == kCurveJoints && is_simple(model) && !is_singular_everywhere(model);
+  if (has_arcs() || has_curve) locked_arms = LockedArms::of(model);
+  if (!chain || chain->is_completed()) return;
+  const bool proves = chain->held < 0 && is_nominal() && !chain->is_almost();
+  const TaskSpace task(Task(), options.position_tolerance, options.rotation_tolerance);
+  if (proves || chain->form.is_held) {
+    trials.emplace(model, *chain, database->data(), task, kernels);
+  }
 }
 
-WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,
+WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Database* database,
                              const SolverOptions& options)
-    : robot_(robot),
-      nominal_(nominal),
-      database_(&database),
-      options_(options),
-      closed_forms_(closed_forms_of(robot.model(), nominal.model())),
-      solves_in_lanes_(iksel::solves_in_lanes(database.data(), options)),
-      damaged_(database.data().storage.damaged) {
-  if (solves_in_lanes_ && &robot.model() == &nominal.model()) {
-    held_arms_ = Held::arms_of(robot.model());
-  }
-  const auto& chain = closed_forms_.pose;
-  has_curve_ = solves_in_lanes_ && !chain && robot.dof() == kCurveJoints &&
-               is_simple(robot.model()) && !is_singular_everywhere(robot.model());
-  if (solves_in_lanes_ && (has_arcs() || has_curve_)) locked_arms_ = LockedArms::of(robot.model());
-  if (solves_in_lanes_ && chain && !chain->is_completed()) {
-    const bool proves =
-        chain->held < 0 && &robot.model() == &nominal.model() && !chain->is_almost();
-    const TaskSpace task(Task(), options.position_tolerance, options.rotation_tolerance);
-    if (proves || chain->form.is_held) {
-      trials_.emplace(robot.model(), *chain, database.data(), task, kernels_);
-    }
-  }
-  fill();
-}
-
-WorkspacePool::WorkspacePool(const Robot& several, const SolverOptions& options)
-    : robot_(several), nominal_(several), database_(nullptr), options_(options) {
-  fill();
-}
-
-void WorkspacePool::fill() {
+    : shared_(robot, nominal, database, options) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i) idle_[i] = make().release();
+  for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i)
+    idle_[i] = std::make_unique<Workspace>(shared_).release();
 }
 
 WorkspacePool::~WorkspacePool() {
   for (auto& place : idle_) delete place.load();
 }
 
-std::unique_ptr<Workspace> WorkspacePool::make() const {
-  if (database_ == nullptr) return std::make_unique<Workspace>(robot_.all(), options_);
-  auto workspace =
-      std::make_unique<Workspace>(robot_.model(), nominal_.model(), database_->data(), options_,
-                                  closed_forms_, trials_ ? &*trials_ : nullptr, kernels_);
-  for (const Held::Arm& arm : held_arms_) {
-    workspace->lanes->held.emplace_back(robot_.model(), arm, kernels_);
-  }
-  if (has_curve_) workspace->lanes->curve.emplace(robot_.model(), kernels_);
-  if (!locked_arms_.arms.empty()) {
-    workspace->lanes->ends.emplace(robot_.model(), locked_arms_, options_.position_tolerance,
-                                   options_.rotation_tolerance, kernels_);
-  }
-  return workspace;
-}
-
 WorkspacePool::Lease::Lease(const WorkspacePool& pool) : pool_(pool) {
-  if (pool.damaged_ != nullptr) pool.database_->data().check_intact();
+  const Database* database = pool.shared_.database;
+  if (database != nullptr) database->data().check_intact();
   for (auto& place : pool.idle_) {
     if (place.load(std::memory_order_relaxed) == nullptr) continue;
     workspace_ = place.exchange(nullptr, std::memory_order_acquire);
     if (workspace_ != nullptr) return;
   }
-  workspace_ = pool.make().release();
+  workspace_ = std::make_unique<Workspace>(pool.shared_).release();
 }
 
 WorkspacePool::Lease::~Lease() {

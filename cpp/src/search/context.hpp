@@ -12,9 +12,9 @@
 #include "iksel/database.hpp"
 #include "iksel/options.hpp"
 #include "iksel/robot.hpp"
+#include "kinematics/kdl_chain.hpp"
 #include "refine/closest_descent.hpp"
 #include "refine/lane_refiner.hpp"
-#include "refine/scheme_refiner.hpp"
 #include "search/collector.hpp"
 #include "seeds/arc_ends.hpp"
 #include "seeds/branch_enclosure.hpp"
@@ -35,14 +35,39 @@
 
 namespace iksel {
 
+/// What all searches of a solver read.
+struct SharedBySearches {
+  /// `nominal` is the robot that the database was built for; of several tips, whose chains have
+  /// their own, there is none.
+  SharedBySearches(const Robot& robot, const Robot& nominal, const Database* database,
+                   const SolverOptions& options);
+
+  /// Whether the chain is that which the database and the closed forms are of.
+  [[nodiscard]] bool is_nominal() const { return &robot.model() == &nominal.model(); }
+  /// Whether the self-motion is known as arcs.
+  [[nodiscard]] bool has_arcs() const { return closed_forms.pose && closed_forms.pose->held >= 0; }
+
+  const Robot& robot;
+  const Robot& nominal;
+  const Database* database;
+  const SolverOptions& options;
+  /// Of all workspaces, whatever IKSEL_SIMD says when they are made.
+  const lanes::LaneKernels& kernels = lanes::choose_kernels();
+  /// Whether searches of one tip are in lanes, if the options, the chain and the database allow it;
+  /// else one seed at a time.
+  bool in_lanes = false;
+  /// Whether seven joints of which none can be swept have a self-motion that is a curve.
+  bool has_curve = false;
+  /// Of the nominal chain.
+  ClosedForms closed_forms;
+  std::vector<Held::Arm> held_arms;
+  LockedArms locked_arms;
+  std::optional<BranchTrials> trials;
+};
+
 /// What one search writes to. Never shared between two at once.
 struct Workspace {
-  /// `nominal` is the chain that the data belongs to; `closed_forms` are its own.
-  Workspace(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const ClosedForms& closed_forms,
-            const BranchTrials* trials, const lanes::LaneKernels& kernels);
-  /// Of several tips, whose chains have their own: neither in lanes nor one at a time.
-  Workspace(const RobotModel& several, const SolverOptions& options);
+  explicit Workspace(const SharedBySearches& shared);
 
   /// The scheme of one seed at a time, by which given seeds are ranked too.
   Paper scheme;
@@ -53,12 +78,8 @@ struct Workspace {
   /// Which of some solutions beside limits were moved inside.
   std::vector<int> tried;
 
-  /// One of two ways to search of one tip: lanes, if the options, the chain and the database allow
-  /// it.
   struct InLanes {
-    InLanes(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-            const SolverOptions& options, const ClosedForms& closed_forms,
-            const BranchTrials* trials, const lanes::LaneKernels& kernels);
+    explicit InLanes(const SharedBySearches& shared);
 
     LaneRefiner refiner;
     LaneQuery query;
@@ -99,13 +120,15 @@ struct Workspace {
     FreeSamples::Memory samples;
   };
   struct OneAtATime {
-    OneAtATime(const ChainModel& model, const ChainModel& nominal, const DatabaseData& data,
-               const SolverOptions& options, const Paper& scheme);
+    OneAtATime(const SharedBySearches& shared, const Paper& scheme);
 
-    SchemeRefiner refiner;
+    /// Only if the options iterate by KDL, whose objects are not safe to share: to the tip link for
+    /// a full pose, else to the TCP.
+    std::unique_ptr<KdlChain> kdl_tip, kdl_tcp;
     Selection selection;
     TaskSamples task_samples;
   };
+  /// Of one tip one of the two, of several neither.
   std::unique_ptr<InLanes> lanes;
   std::unique_ptr<OneAtATime> one_at_a_time;
 };
@@ -113,24 +136,14 @@ struct Workspace {
 /// Workspaces of a solver, each lent to one search at a time.
 class WorkspacePool {
  public:
-  WorkspacePool(const Robot& robot, const Robot& nominal, const Database& database,
+  /// As SharedBySearches; all must outlive this.
+  WorkspacePool(const Robot& robot, const Robot& nominal, const Database* database,
                 const SolverOptions& options);
-  /// Of several tips.
-  WorkspacePool(const Robot& several, const SolverOptions& options);
   WorkspacePool(const WorkspacePool&) = delete;
   WorkspacePool& operator=(const WorkspacePool&) = delete;
   ~WorkspacePool();
 
-  /// Of all its workspaces, whatever IKSEL_SIMD says when they are made.
-  [[nodiscard]] const lanes::LaneKernels& kernels() const { return kernels_; }
-
-  /// Whether its workspaces solve in lanes.
-  [[nodiscard]] bool solves_in_lanes() const { return solves_in_lanes_; }
-
-  /// Whether the self-motion is known as arcs.
-  [[nodiscard]] bool has_arcs() const {
-    return closed_forms_.pose && closed_forms_.pose->held >= 0;
-  }
+  [[nodiscard]] const SharedBySearches& shared() const { return shared_; }
 
   /// A workspace, given back when this goes. Throws DatabaseError if the database was damaged since
   /// it was mapped.
@@ -148,25 +161,7 @@ class WorkspacePool {
   };
 
  private:
-  [[nodiscard]] std::unique_ptr<Workspace> make() const;
-
-  const lanes::LaneKernels& kernels_ = lanes::choose_kernels();
-
-  void fill();
-
-  const Robot& robot_;
-  const Robot& nominal_;
-  const Database* database_;  ///< null: of several tips
-  const SolverOptions& options_;
-  ClosedForms closed_forms_;
-  std::vector<Held::Arm> held_arms_;
-  LockedArms locked_arms_;
-  bool solves_in_lanes_ = false;
-  std::optional<BranchTrials> trials_;
-  /// Whether seven joints of which none can be swept have a self-motion that is a curve.
-  bool has_curve_ = false;
-  /// As Storage::damaged of the database.
-  const std::atomic<bool>* damaged_ = nullptr;
+  SharedBySearches shared_;
   /// Those that lie idle; a null is a place to put one back. More solves at once than places make
   /// their own.
   static constexpr std::size_t kPlaces = 64;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
+#include "refine/iterate.hpp"
+#include "refine/single_refiner.hpp"
 #include "search/explore.hpp"
 #include "seeds/random_seeds.hpp"
 
@@ -15,9 +17,8 @@ namespace {
 template <typename Samples>
 class AllowedSeeds {
  public:
-  AllowedSeeds(Samples& samples, const JointSpace& joints, const Goal& goal, Random& random,
-               Work& work)
-      : samples_(samples), joints_(joints), goal_(goal), random_(random), work_(work) {}
+  AllowedSeeds(Samples& samples, const Goal& goal, Random& random, Work& work)
+      : samples_(samples), goal_(goal), random_(random), work_(work) {}
 
   bool next_stage() {
     work_.lap(&StageTimes::iterate);
@@ -40,7 +41,7 @@ class AllowedSeeds {
     if (rank_ == Samples::kPerPose || !work_.take()) return false;
     const int rank = rank_++;
     if (at_random_) {
-      load_random(joints_, random_, refiner, lane);
+      load_random(goal_.joints(), random_, refiner, lane);
     } else {
       samples_.load(rank, refiner, lane);
     }
@@ -49,7 +50,6 @@ class AllowedSeeds {
 
  private:
   Samples& samples_;
-  const JointSpace& joints_;
   const Goal& goal_;
   Random& random_;
   Work& work_;
@@ -61,21 +61,33 @@ class AllowedSeeds {
 /// One seed at a time, by a scheme. Returns whether one reached the goal outside the limits.
 template <typename Parts>
 bool search_by_scheme(const Parts& parts) {
-  auto& [refiner, selection, task_samples] = *parts.workspace.one_at_a_time;
+  auto& [kdl_tip, kdl_tcp, selection, task_samples] = *parts.workspace.one_at_a_time;
+  const Goal& goal = parts.goal;
   const auto should_continue = [&] { return parts.answers.should_continue(); };
   RowSeeds near = parts.near_seed();
   GivenSeeds given = parts.given_seeds(1, should_continue);
   Random random(parts.options.seed);
-  refiner.begin(parts.goal, random);
-  if (parts.goal.is_full_pose()) {
-    SelectedSeeds selected(selection, parts.goal.tip_target(), parts.work);
+  KdlChain* kdl = goal.is_full_pose() ? kdl_tip.get() : kdl_tcp.get();
+  const IterationContext context{parts.model, parts.workspace.scheme, parts.options.max_iterations,
+                                 goal,        goal.tip_target(),      kdl,
+                                 random};
+  bool left_limits = false;
+  // As the reference does, also from outside the limits.
+  const auto attempt = [&](JointVector& q, int& steps) {
+    const Outcome outcome = iterate(context, q, steps);
+    left_limits = left_limits || outcome == Outcome::outside_limits;
+    return outcome == Outcome::solved;
+  };
+  SingleRefiner refiner(parts.model.dof, attempt);
+  if (goal.is_full_pose()) {
+    SelectedSeeds selected(selection, context.tip_target, parts.work);
     parts.run(refiner, near, given, selected);
   } else {
-    AllowedSeeds allowed(task_samples, parts.model.joints, parts.goal, random, parts.work);
+    AllowedSeeds allowed(task_samples, goal, random, parts.work);
     parts.run(refiner, near, given, allowed);
   }
   parts.work.lap(&StageTimes::iterate);
-  return refiner.has_left_limits();
+  return left_limits;
 }
 
 /// In lanes: all branches in closed form, if there are such; else of a full pose what else is known
@@ -90,11 +102,7 @@ Proof search_in_lanes(const Parts& parts) {
   GivenSeeds given = parts.given_seeds(lanes::kBlock, should_continue);
   lanes.refiner.begin(goal.task(), kFirst, Width::narrow);
   const Pose Y = lanes.query.reduce(goal.target());
-  if (goal.is_full_pose()) {
-    lanes.refiner.set_pose(Y);
-  } else {
-    lanes.refiner.set_task(goal.target());
-  }
+  lanes.refiner.set_target(Y, goal.target());
   Enumeration* branches = lanes.branches_of(goal.task());
   if (branches != nullptr && parts.request.database_seeds) {
     RowSeeds none(nullptr, parts.work);
@@ -108,7 +116,7 @@ Proof search_in_lanes(const Parts& parts) {
   }
   parts.work.lap(&StageTimes::query);
   Random random(parts.options.seed);
-  AllowedSeeds allowed(lanes.query, parts.model.joints, goal, random, parts.work);
+  AllowedSeeds allowed(lanes.query, goal, random, parts.work);
   parts.run(lanes.refiner, near, given, allowed);
   parts.work.lap(&StageTimes::iterate);
   return Proof::none;

@@ -4,7 +4,7 @@
 //
 // What takes part is chosen by the caller:
 //   Refiner  width(), advance(busy), has_arrived, stays, is_spent, is_to_be_looked_at, at and q
-//            of a lane (lane_refiner.hpp, scheme_refiner.hpp);
+//            of a lane (lane_refiner.hpp, single_refiner.hpp);
 //   Seeds    bool next_stage(), false if there are no more; bool load(refiner, lane), false if the
 //            stage has no more for this lane (seeds/);
 //   Answers  Verdict offer(lane, q); bool knows(q), where a seed need not be followed any further;

@@ -10,8 +10,8 @@
 
 #include "base/function_ref.hpp"
 #include "base/work.hpp"
+#include "refine/lane_refiner.hpp"
 #include "search/context.hpp"
-#include "search/patience.hpp"
 #include "search/search.hpp"
 #include "seeds/beyond_limits.hpp"
 #include "seeds/row_seeds.hpp"
@@ -90,7 +90,7 @@ struct SearchParts {
       tried.push_back(i);
       JointVector q = Eigen::Map<const Eigen::VectorXd>(joints(i), model.dof);
       work.take_on_top();
-      if (!move_inside_limits(model, goal, q)) continue;
+      if (!move_inside_limits(goal, q)) continue;
       is_satisfied = answers.offer(0, q) == Verdict::stop;
     }
     work.lap(&StageTimes::iterate);

@@ -23,14 +23,14 @@ class SolutionSet {
   static constexpr std::size_t kMost = 1024;
 
   explicit SolutionSet(const RobotModel& model)
-      : model_(model),
-        q_(kMost * static_cast<std::size_t>(model.dof)),
-        cost_(kMost),
-        position_error_(kMost),
-        rotation_error_(kMost) {}
+      : model_(model), dof_(static_cast<std::size_t>(model.dof)) {
+    q_.reserve(kMost * dof_);
+    others_.reserve(kMost);
+  }
 
   void clear() {
-    size_ = 0;
+    q_.clear();
+    others_.clear();
     replacements_ = 0;
   }
 
@@ -41,20 +41,23 @@ class SolutionSet {
     const auto is_near = [&](std::size_t i) {
       return model_.joints.are_near(q(i), solution.q, min_distance);
     };
-    std::size_t place = size_;
-    for (std::size_t i = 0; i < size_; ++i) {
+    const Others others{cost, solution.position_error, solution.rotation_error};
+    std::size_t place = size();
+    for (std::size_t i = 0; i < size(); ++i) {
       if (!is_near(i)) continue;
-      if (cost >= cost_[i]) return false;
+      if (cost >= others_[i].cost) return false;
       place = std::min(place, i);
     }
-    if (place == size_) {
-      if (size_ == kMost) return false;
-      put(size_++, solution, cost);
+    if (place == size()) {
+      if (size() == kMost) return false;
+      q_.insert(q_.end(), solution.q.data(), solution.q.data() + dof_);
+      others_.push_back(others);
       return true;
     }
     ++replacements_;
-    put(place, solution, cost);
-    for (std::size_t i = size_; --i > place;) {
+    std::copy_n(solution.q.data(), dof_, &q_[place * dof_]);
+    others_[place] = others;
+    for (std::size_t i = size(); --i > place;) {
       if (is_near(i)) erase(i);
     }
     return false;
@@ -65,22 +68,20 @@ class SolutionSet {
   /// True if q lies within `radius` of a solution in every joint.
   template <typename Q>
   [[nodiscard]] bool is_near_known(const Q& q, double radius) const {
-    for (std::size_t i = 0; i < size_; ++i) {
+    for (std::size_t i = 0; i < size(); ++i) {
       if (model_.joints.are_near(this->q(i), q, radius)) return true;
     }
     return false;
   }
 
-  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t size() const { return others_.size(); }
   /// Infinite if there is none.
   [[nodiscard]] double least_cost() const {
     double least = kInfinity;
-    for (std::size_t i = 0; i < size_; ++i) least = std::min(least, cost_[i]);
+    for (const Others& each : others_) least = std::min(least, each.cost);
     return least;
   }
-  [[nodiscard]] const double* q(std::size_t i) const {
-    return &q_[i * static_cast<std::size_t>(model_.dof)];
-  }
+  [[nodiscard]] const double* q(std::size_t i) const { return &q_[i * dof_]; }
   [[nodiscard]] JointVector at(std::size_t i) const {
     return Eigen::Map<const Eigen::VectorXd>(q(i), model_.dof);
   }
@@ -90,39 +91,29 @@ class SolutionSet {
     result.status = Status::solved;
     result.proof = Proof::answer;
     result.q = at(i);
-    result.position_error = position_error_[i];
-    result.rotation_error = rotation_error_[i];
+    result.position_error = others_[i].position_error;
+    result.rotation_error = others_[i].rotation_error;
     return result;
   }
 
  private:
-  void put(std::size_t i, const Result& solution, double cost) {
-    std::copy_n(solution.q.data(), model_.dof, &q_[i * static_cast<std::size_t>(model_.dof)]);
-    cost_[i] = cost;
-    position_error_[i] = solution.position_error;
-    rotation_error_[i] = solution.rotation_error;
-  }
+  /// What is kept of a solution besides its joint values.
+  struct Others {
+    double cost;
+    double position_error;  ///< [m]
+    double rotation_error;  ///< [rad]
+  };
 
   void erase(std::size_t i) {
-    const auto dof = static_cast<std::size_t>(model_.dof);
-    const auto close_gap = [&](std::vector<double>& values, std::size_t each) {
-      const auto gap = values.begin() + static_cast<std::ptrdiff_t>(i * each);
-      std::copy(gap + static_cast<std::ptrdiff_t>(each),
-                values.begin() + static_cast<std::ptrdiff_t>(size_ * each), gap);
-    };
-    close_gap(q_, dof);
-    close_gap(cost_, 1);
-    close_gap(position_error_, 1);
-    close_gap(rotation_error_, 1);
-    --size_;
+    const auto q = q_.begin() + static_cast<std::ptrdiff_t>(i * dof_);
+    q_.erase(q, q + static_cast<std::ptrdiff_t>(dof_));
+    others_.erase(others_.begin() + static_cast<std::ptrdiff_t>(i));
   }
 
   const RobotModel& model_;
+  std::size_t dof_;
   std::vector<double> q_;
-  std::vector<double> cost_;
-  std::vector<double> position_error_;  ///< [m]
-  std::vector<double> rotation_error_;  ///< [rad]
-  std::size_t size_ = 0;
+  std::vector<Others> others_;
   int replacements_ = 0;
 };
 

@@ -95,14 +95,14 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
          is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance, rotation_tolerance);
 }
 
-bool move_inside_limits(const ChainModel& model, const Goal& goal, JointVector& q) {
+bool move_inside_limits(const Goal& goal, JointVector& q) {
   const bool is_hopeless =
       goal.is_full_pose() &&
-      is_beyond_limits(model, goal.target(), q, goal.task().position_tolerance(),
+      is_beyond_limits(goal.model(), goal.target(), q, goal.task().position_tolerance(),
                        goal.task().rotation_tolerance());
   if (is_hopeless) return false;
-  share_turns(model, q);
-  return descend_into_tolerances(model, goal, q);
+  share_turns(goal.model(), q);
+  return descend_into_tolerances(goal, q);
 }
 
 }  // namespace iksel

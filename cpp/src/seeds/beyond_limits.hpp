@@ -19,6 +19,6 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
 
 /// From q, a solution beside limits, to an answer inside of them, if the tolerances allow one that
 /// can be found from there. q becomes the answer.
-bool move_inside_limits(const ChainModel& model, const Goal& goal, JointVector& q);
+bool move_inside_limits(const Goal& goal, JointVector& q);
 
 }  // namespace iksel

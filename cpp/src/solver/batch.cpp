@@ -115,8 +115,7 @@ class Batch {
     }
     if (lanes.branches_of(task) != nullptr) return left;
     // Any seed is given up after so many iterations.
-    constexpr int kPatience = 8;
-    lanes.refiner.begin(task, {kPatience, kPatience}, Width::wide);
+    lanes.refiner.begin(task, {8, 8}, Width::wide);
     LeafLanes leaves(lanes.query, solver_.options.max_attempts);
     return stream(left, lanes.query, lanes.refiner, leaves, tell);
   }
@@ -157,10 +156,7 @@ class Batch {
         answers[i - first] = solve_one(i, bare, workspace);
       }
     }
-    std::vector<double> candidates;
-    for (const Result& answer : answers) {
-      candidates.insert(candidates.end(), answer.q.data(), answer.q.data() + answer.q.size());
-    }
+    const std::vector<double> candidates = joint_values(answers);
     std::array<bool, kMost> keep{};
     const std::size_t count = candidates.size() / static_cast<std::size_t>(solver_.robot.dof());
     Screen screen(request, solver_.robot.dof());
@@ -187,13 +183,13 @@ class Batch {
   const OnResult& on_result_;
 };
 
-}  // namespace
-
+/// A batch: `on_row(row, result)` for each row of `pose_at`, in any order and from any thread;
+/// near_of(row) may be null.
 template <typename PoseAt, typename Near, typename OnRow>
-void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
-                              const Near& near_of, int threads, const OnRow& on_row,
-                              const Progress& progress) const {
-  const BatchTargets<PoseAt> targets(count, robot.tips(), pose_at, request.on_invalid_pose);
+void solve_rows(const Solver::Impl& solver, std::size_t count, const PoseAt& pose_at,
+                const SolveRequest& request, const Near& near_of, int threads, const OnRow& on_row,
+                const Progress& progress) {
+  const BatchTargets<PoseAt> targets(count, solver.robot.tips(), pose_at, request.on_invalid_pose);
   Result no_pose;
   no_pose.status = Status::invalid_pose;
   for (const std::size_t row : targets.invalid_rows()) on_row(row, no_pose);
@@ -204,9 +200,11 @@ void Solver::Impl::solve_rows(std::size_t count, const PoseAt& pose_at, const So
     if (progress) progress(done + targets.invalid_rows().size(), count);
   };
   const auto near = [&](std::size_t i) { return near_of(targets.row_of(i)); };
-  const Batch batch(*this, targets.size(), request, targets, near, on_result);
+  const Batch batch(solver, targets.size(), request, targets, near, on_result);
   batch.run(threads, on_progress);
 }
+
+}  // namespace
 
 std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
                                         const SolveRequest& request,
@@ -221,8 +219,8 @@ std::vector<Result> Solver::solve_batch(const std::vector<Pose>& T_base_tip,
   }
   for (std::size_t i = 0; i < near.size(); ++i) check_near(*impl_, near[i], i);
   std::vector<Result> results(count);
-  impl_->solve_rows(
-      count, [&](std::size_t i) -> const Pose& { return T_base_tip[i]; }, request,
+  solve_rows(
+      *impl_, count, [&](std::size_t i) -> const Pose& { return T_base_tip[i]; }, request,
       [&](std::size_t row) { return near.empty() ? nullptr : near[row].data(); }, threads,
       [&](std::size_t row, const Result& result) { results[row] = result; }, {});
   return results;
@@ -240,9 +238,10 @@ void Solver::solve_batch(const double* T_base_tip, std::size_t count, const Solv
   for (std::size_t row = 0; near != nullptr && row < count; ++row) {
     check_near(*impl_, Eigen::Map<const Eigen::VectorXd>(near_of(row), dof), row);
   }
-  impl_->solve_rows(
-      count, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, request, near_of, threads,
-      [&](std::size_t row, const Result& result) { write_row(result, row, dof, out); }, progress);
+  solve_rows(
+      *impl_, count, [&](std::size_t i) { return to_pose(T_base_tip + 16 * i); }, request, near_of,
+      threads, [&](std::size_t row, const Result& result) { write_row(result, row, dof, out); },
+      progress);
 }
 
 }  // namespace iksel

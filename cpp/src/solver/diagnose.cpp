@@ -59,7 +59,7 @@ class Diagnoser {
     // an arm that is but nearly regular its own.
     if (branches->chain().is_completed() || !branches->are_answers()) return false;
     const Pose Y = workspace.lanes->query.reduce(goal_.target());
-    auto reasons = explain_branches(model_, goal_, Y, *branches);
+    auto reasons = explain_branches(goal_, Y, *branches);
     if (!reasons) return false;
     out_ = std::move(reasons->diagnosis);
     BestEffort effort = make_effort(goal_);
@@ -204,7 +204,7 @@ class Diagnoser {
   }
   /// A rotation counts that part of what it counts otherwise.
   [[nodiscard]] BestEffort make_effort(const Goal& towards, double part = 1) const {
-    return {model_, towards, part * solver_.data().data().weight};
+    return {towards, part * solver_.data().data().weight};
   }
 
   void explain_refusals(Status status) {
@@ -236,8 +236,7 @@ class Diagnoser {
 
   /// Whether q is an answer that the search has missed; it is then what is said.
   bool is_answer(const JointVector& q) {
-    Result ignored;
-    if (!goal_.check(q, ignored)) return false;
+    if (!goal_.is_solution(q)) return false;
     describe(q);
     out_.branch = JointVector();
     out_.q_is_solution = true;

@@ -144,7 +144,7 @@ JointVector joints_of(const Enumeration& branches, int lane) {
 
 /// The branch that violates the limits least, of those that reach the goal by the chain's own
 /// forward kinematics; empty if there is none.
-JointVector find_nearest(const ChainModel& model, const Goal& goal, const Enumeration& branches) {
+JointVector find_nearest(const Goal& goal, const Enumeration& branches) {
   JointVector nearest;
   double least = kInfinity;
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
@@ -153,7 +153,7 @@ JointVector find_nearest(const ChainModel& model, const Goal& goal, const Enumer
     double position = 0;
     double rotation = 0;
     goal.measure(q, position, rotation);
-    const double violation = worst_violation(model.joints, q);
+    const double violation = worst_violation(goal.joints(), q);
     if (!goal.is_reached(position, rotation) || violation >= least) continue;
     least = violation;
     nearest = q;
@@ -195,12 +195,13 @@ std::string describe_elbow(const ChainModel& model, const ClosedFormChain& chain
 
 }  // namespace
 
-std::optional<BranchReasons> explain_branches(const ChainModel& model, const Goal& goal,
-                                              const Pose& Y, Enumeration& branches) {
+std::optional<BranchReasons> explain_branches(const Goal& goal, const Pose& Y,
+                                              Enumeration& branches) {
+  const ChainModel& model = goal.model();
   branches.solve(Y);
   BranchReasons reasons;
   Diagnosis& out = reasons.diagnosis;
-  out.branch = find_nearest(model, goal, branches);
+  out.branch = find_nearest(goal, branches);
   if (out.branch.size() > 0) {
     out.cause = Cause::joint_limits;
     set_violation(model.joints, out.branch, out);

@@ -21,7 +21,7 @@ struct BranchReasons {
 /// Why none of the branches of a goal that is proven to have no answer is one: the branch that
 /// violates the limits least, or the angle that there is not. Nothing if rounding leaves that open.
 /// `branches`: of the goal's task. Y as in reduction.hpp.
-std::optional<BranchReasons> explain_branches(const ChainModel& model, const Goal& goal,
-                                              const Pose& Y, Enumeration& branches);
+std::optional<BranchReasons> explain_branches(const Goal& goal, const Pose& Y,
+                                              Enumeration& branches);
 
 }  // namespace iksel

@@ -2,7 +2,6 @@
 // Why not, of several tips: one that cannot be reached by itself, what refuses the answers, or the
 // joints that they share.
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/message_text.hpp"
@@ -64,7 +63,7 @@ Diagnosis Solver::Impl::diagnose_tips(const std::vector<Pose>& targets,
       const Solutions refused = solve_all(goal, every, opened(request), workspace);
       out.q = explain_refusals(request, result.status, refused, out);
     } else {
-      BestEffort effort(robot.all(), goal, rotation_weight());
+      BestEffort effort(goal, rotation_weight());
       effort.from_anywhere(kEfforts, options.seed);
       out.q = effort.q();
       const bool is_late = result.status == Status::out_of_time;

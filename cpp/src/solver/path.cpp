@@ -36,8 +36,8 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
   // Solutions of the database that differ by less in every joint are one.
   const Collector::Aim aim{20 * kSameCandidate, true, goal.is_redundant() ? path.candidates : 0};
-  Collector collector(solver.robot.all(), goal, search.request(), aim, is_satisfied,
-                      solver.options.max_attempts, workspace.collected);
+  Collector collector(goal, search.request(), aim, is_satisfied, solver.options.max_attempts,
+                      workspace.collected);
   solver.collect(collector, workspace);
   if (before != nullptr) {
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -221,16 +221,6 @@ class PathPlan {
 
 }  // namespace
 
-PathResult Solver::Impl::solve_path(const std::vector<Pose>& targets, const PathOptions& path,
-                                    Workspace& workspace) const {
-  PathPlan plan(*this, targets, path, Speeds::kept, workspace);
-  PathResult result = plan.solve();
-  if (!plan.has_other_ways(result)) return result;
-  // What can be reached in time so far ends here. The whole way may need no haste.
-  PathResult whole = PathPlan(*this, targets, path, Speeds::made_up_for, workspace).solve();
-  return whole.success() ? whole : result;
-}
-
 PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
                               const PathOptions& options) const {
   if (T_base_tip.empty()) throw InvalidArgumentError("poses: there are none");
@@ -244,7 +234,12 @@ PathResult Solver::solve_path(const std::vector<Pose>& T_base_tip,
   if (options.scene) options.scene->check_fits(robot());
   if (options.start) impl_->angles.check(*options.start, "start");
   const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->solve_path(targets, options, lease.get());
+  PathPlan plan(*impl_, targets, options, Speeds::kept, lease.get());
+  PathResult result = plan.solve();
+  if (!plan.has_other_ways(result)) return result;
+  // What can be reached in time so far ends here. The whole way may need no haste.
+  PathResult whole = PathPlan(*impl_, targets, options, Speeds::made_up_for, lease.get()).solve();
+  return whole.success() ? whole : result;
 }
 
 }  // namespace iksel

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <set>
 #include <vector>
 
@@ -39,13 +38,6 @@ inline void add(const JointVector& q, Layer& layer) {
     return std::equal(q.begin(), q.end(), known.q.begin(), is_near);
   });
   if (!is_known) layer.push_back({q, 0, 0});
-}
-
-/// The joint values of all candidates, one after the other.
-inline std::vector<double> joint_values(const Layer& layer) {
-  std::vector<double> q;
-  for (const PathCandidate& each : layer) q.insert(q.end(), each.q.begin(), each.q.end());
-  return q;
 }
 
 /// Whether a step that is too fast is none, or is one, to be made slower at last.
@@ -103,7 +95,6 @@ class PathSearch {
     /// Every so many samples of the sweep are looked at.
     constexpr int kStride = Sweep::kSamples / 8;
     const Pose Y = lanes.query.reduce(goal.target());
-    constexpr Patience kNext{8, kStepsToNext};
     std::vector<double> q = joint_values(before);
     const int first = static_cast<int>(waypoint % kStride);
     if (with_others) {
@@ -115,7 +106,7 @@ class PathSearch {
     Work work(0);
     RowSeeds seeds(q.data(), q.size() / dof, dof, /*are_answers=*/false, work);
     const RowAnswers answers =
-        refine_rows(seeds, model_.joints, goal, Y, kNext, lanes.refiner, work);
+        refine_rows(seeds, goal, Y, {kFirst.far_off, kStepsToNext}, lanes.refiner, work);
     for (std::size_t row = 0; row < seeds.count(); ++row) {
       const Result& answer = answers.at(row);
       if (!answer.success()) continue;
@@ -167,16 +158,7 @@ class PathSearch {
   }
 
   /// Leaves only what the scene and the filter let through.
-  void screen(Layer& layer) {
-    if (!screen_.is_set() || layer.empty()) return;
-    const std::unique_ptr<bool[]> keep(new bool[layer.size()]());
-    screen_.apply(joint_values(layer).data(), layer.size(), keep.get());
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < layer.size(); ++i) {
-      if (keep[i]) layer[kept++] = layer[i];
-    }
-    layer.resize(kept);
-  }
+  void screen(Layer& layer) { screen_.keep_passed(layer, /*by_scene=*/true); }
   /// Why a waypoint has no candidate, where all were refused.
   [[nodiscard]] Status refusal() const { return screen_.refusal(); }
 

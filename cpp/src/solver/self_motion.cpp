@@ -10,7 +10,6 @@
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "iksel/structure.hpp"
-#include "search/patience.hpp"
 #include "search/row_answers.hpp"
 #include "solver/solver_impl.hpp"
 #include "structure/elbow.hpp"
@@ -20,10 +19,10 @@ namespace {
 
 /// Holds q to the limit that an arc ends at, by a joint that follows the six others, which go to
 /// the goal; where that fails, q stays.
-void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEnd& end,
-                   JointVector& q) {
+void hold_to_limit(const Goal& goal, const SelfMotionEnd& end, JointVector& q) {
   constexpr int kSteps = 4;
   if (end.kind != ArcEnd::limit) return;
+  const ChainModel& model = goal.model();
   const Limit limit = model.joints.limit(end.joint, end.coupled_limit);
   int follows = 0;
   const JointVector row = limit.row(model.dof);
@@ -56,9 +55,8 @@ void hold_to_limit(const ChainModel& model, const Goal& goal, const SelfMotionEn
 }
 
 /// The arc through what was refined of its points, `first` the first of them.
-SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const Curve::Arc& found,
-                       std::size_t first, const RowAnswers& answers,
-                       const std::optional<Elbow>& elbow) {
+SelfMotionArc make_arc(const Goal& goal, const Curve::Arc& found, std::size_t first,
+                       const RowAnswers& answers, const std::optional<Elbow>& elbow) {
   SelfMotionArc arc;
   arc.begin = found.begin;
   arc.end = found.end;
@@ -66,17 +64,17 @@ SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const Curve::A
     const Result& answer = answers.at(first + i);
     if (!answer.success()) continue;
     JointVector q = answer.q;
-    if (i == 0) hold_to_limit(model, goal, arc.begin, q);
-    if (i + 1 == found.q.size()) hold_to_limit(model, goal, arc.end, q);
+    if (i == 0) hold_to_limit(goal, arc.begin, q);
+    if (i + 1 == found.q.size()) hold_to_limit(goal, arc.end, q);
     if (!arc.q.empty()) {
       JointVector image = q;
-      model.joints.wrap_nearest(arc.q.back(), 0, image);
+      goal.joints().wrap_nearest(arc.q.back(), 0, image);
       if (goal.is_solution(image)) q = image;
     }
     arc.q.push_back(q);
   }
   const auto move = [&](const JointVector& a, const JointVector& b) {
-    return model.joints.difference(a, b).norm();
+    return goal.joints().difference(a, b).norm();
   };
   for (std::size_t i = 1; i < arc.q.size(); ++i) arc.length += move(arc.q[i - 1], arc.q[i]);
   if (arc.is_closed() && !arc.q.empty()) arc.length += move(arc.q.back(), arc.q.front());
@@ -86,24 +84,23 @@ SelfMotionArc make_arc(const ChainModel& model, const Goal& goal, const Curve::A
   return arc;
 }
 
-}  // namespace
-
-void Solver::Impl::check_self_motion(double spacing) const {
-  const std::string who = "self_motion: robot '" + robot.name() + "'";
-  if (!workspaces.has_arcs()) {
-    const Structure structure = find_structure(nominal);
+/// Throws InvalidArgumentError unless there is a self-motion to be asked for.
+void check_self_motion(const Solver::Impl& solver, double spacing) {
+  const std::string who = "self_motion: robot '" + solver.robot.name() + "'";
+  if (!solver.workspaces.shared().has_arcs()) {
+    const Structure structure = find_structure(solver.nominal);
     throw InvalidArgumentError(
         who + " has no self-motion that could be swept (" + to_string(structure.kind) + ": " +
         structure.description +
         "); it takes seven joints, three of whose axes meet or are parallel, and "
         "of which but the first or the last may slide");
   }
-  if (!task.is_full_pose()) {
+  if (!solver.task.is_full_pose()) {
     throw InvalidArgumentError(who + " is asked for a task with free axes, " +
-                               std::to_string(task.task().constrained_axes()) +
+                               std::to_string(solver.task.task().constrained_axes()) +
                                " of 6 fixed; only full poses have a self-motion of one dimension");
   }
-  if (!workspaces.solves_in_lanes()) {
+  if (!solver.workspaces.shared().in_lanes) {
     throw InvalidArgumentError(who +
                                " is solved one seed at a time, by strategy Paper or over a "
                                "database of full keys; it takes strategy Lanes and reduced keys");
@@ -113,29 +110,33 @@ void Solver::Impl::check_self_motion(double spacing) const {
   }
 }
 
-SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
-                                     Workspace& workspace) const {
+}  // namespace
+
+SelfMotion Solver::self_motion(const Pose& T_base_tip, double spacing) const {
+  const Pose target = check_pose(T_base_tip);
+  check_self_motion(*impl_, spacing);
+  const WorkspacePool::Lease lease(impl_->workspaces);
+  const ChainModel& model = impl_->model();
   SelfMotion motion;
-  const Goal goal(model(), task, target);
+  const Goal goal(model, impl_->task, target);
   if (goal.is_out_of_reach()) {
     motion.status = Status::out_of_reach;
     motion.proof = Proof::reach;
     return motion;
   }
-  Workspace::InLanes& lanes = *workspace.lanes;
+  Workspace::InLanes& lanes = *lease.get().lanes;
   const Pose Y = lanes.query.reduce(target);
   const std::vector<Curve::Arc>& arcs = lanes.find_arcs(goal.target(), Y, spacing);
   std::vector<Curve::Joints> points;
   for (const auto& arc : arcs) points.insert(points.end(), arc.q.begin(), arc.q.end());
-  Work work(options.max_attempts);
+  Work work(options().max_attempts);
   RowSeeds seeds(points.empty() ? nullptr : points[0].data(), points.size(), kCurveJoints,
                  /*are_answers=*/true, work);
-  const RowAnswers answers =
-      refine_rows(seeds, model().joints, goal, Y, kNearAnswer, lanes.refiner, work);
-  const std::optional<Elbow> elbow = Elbow::of(model());
+  const RowAnswers answers = refine_rows(seeds, goal, Y, kNearAnswer, lanes.refiner, work);
+  const std::optional<Elbow> elbow = Elbow::of(model);
   std::size_t first = 0;
   for (const auto& found : arcs) {
-    SelfMotionArc arc = make_arc(model(), goal, found, first, answers, elbow);
+    SelfMotionArc arc = make_arc(goal, found, first, answers, elbow);
     first += found.q.size();
     if (!arc.q.empty()) motion.arcs.push_back(std::move(arc));
   }
@@ -149,13 +150,6 @@ SelfMotion Solver::Impl::self_motion(const Pose& target, double spacing,
     motion.proof = lanes.find_none(goal.target(), Y);
   }
   return motion;
-}
-
-SelfMotion Solver::self_motion(const Pose& T_base_tip, double spacing) const {
-  const Pose target = check_pose(T_base_tip);
-  impl_->check_self_motion(spacing);
-  const WorkspacePool::Lease lease(impl_->workspaces);
-  return impl_->self_motion(target, spacing, lease.get());
 }
 
 }  // namespace iksel

@@ -86,13 +86,6 @@ class SolutionRanking {
   JointVector from_;
 };
 
-/// The joint values of all, one after the other.
-std::vector<double> joint_values(const std::vector<Image>& images) {
-  std::vector<double> q;
-  for (const Image& image : images) q.insert(q.end(), image.q.begin(), image.q.end());
-  return q;
-}
-
 /// Keeps `count` that lie far from each other, the first among them.
 void keep_apart(const lanes::LaneKernels& kernels, const JointSpace& joints, std::size_t count,
                 std::vector<Image>& images) {
@@ -126,21 +119,6 @@ std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
     }
   }
   return images;
-}
-
-/// Takes out what the filter refuses.
-void apply_filter(Screen& screen, std::vector<Image>& images) {
-  if (!screen.has_filter() || images.empty()) return;
-  const std::unique_ptr<bool[]> keep(new bool[images.size()]);
-  std::fill_n(keep.get(), images.size(), true);
-  screen.ask_filter(joint_values(images).data(), images.size(), keep.get());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (!keep[i]) continue;
-    if (kept != i) images[kept] = std::move(images[i]);
-    ++kept;
-  }
-  images.resize(kept);
 }
 
 /// Of the images of each solution, in order, the first.
@@ -195,8 +173,7 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   const std::size_t for_each = screen.is_set() ? kChoice : 1;
   const auto spread = static_cast<int>(for_each * std::min(most, SolutionSet::kMost / kChoice));
   const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
-  Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
-                   workspace.collected);
+  Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace);
 
   Solutions solutions = without_answers(search.result());
@@ -206,13 +183,13 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
   std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
   bool are_left_out = images.size() >= kMostImages;
-  apply_filter(screen, images);
+  screen.keep_passed(images, /*by_scene=*/false);
   images.erase(std::remove_if(images.begin(), images.end(),
                               [](const Image& image) { return std::isinf(image.cost); }),
                images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  are_left_out |= take_best(workspaces.kernels(), goal.joints(), most, goal.is_redundant(), images);
+  are_left_out |= take_best(workspaces.shared().kernels, goal.joints(), most, goal.is_redundant(), images);
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());

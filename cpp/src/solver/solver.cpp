@@ -62,23 +62,16 @@ bool stays(const Goal& goal, const SolveRequest& request, Result& result) {
 }  // namespace
 
 Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in,
-                   const Database& database_in, const Robot& nominal_in)
+                   const std::optional<Database>& database_in, const Robot& nominal_in)
     : robot(robot_in),
       options(options_in),
-      database(check_fits(nominal_in, database_in)),
+      database(database_in),
       nominal(nominal_in),
       task(options.task, options.position_tolerance, options.rotation_tolerance),
       angles(robot, options),
-      workspaces(robot, nominal, *database, options) {}
-
-Solver::Impl::Impl(const Robot& robot_in, const SolverOptions& options_in)
-    : robot(robot_in),
-      options(options_in),
-      nominal(robot_in),
-      task(options.task, options.position_tolerance, options.rotation_tolerance),
-      angles(robot, options),
-      workspaces(robot, options),
-      tips(std::make_unique<const TipsSearch>(*robot.several(), options)) {}
+      workspaces(robot, nominal, database ? &check_fits(nominal, *database) : nullptr, options) {
+  if (!database) tips = std::make_unique<const TipsSearch>(*robot.several(), options);
+}
 
 Solver::Impl::~Impl() = default;
 
@@ -154,8 +147,8 @@ Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Wor
   return with_goal(targets, request, scene, [&](const Goal& goal) {
     Result result = find_answer(goal, request, workspace, times);
     if (result.success() || !request.closest) return result;
-    give_closest(robot.all(), options, goal, request,
-                 to_vector(*request.closest, rotation_weight()), workspace, result);
+    give_closest(options, goal, request, to_vector(*request.closest, rotation_weight()), workspace,
+                 result);
     return result;
   });
 }
@@ -170,12 +163,11 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
   if (stays(goal, request, result)) return result;
   if (!request.exact && goal.is_never_free()) return find_first(goal, request, workspace, times);
   Screen screen(request, robot.dof());
-  AnswerSelector selector(robot.all(), goal, request, workspace.collected.found, screen);
+  AnswerSelector selector(goal, request, workspace.collected.found, screen);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a screen the selector decides: nothing may have passed it yet.
   const Collector::Aim aim{kSame, selector.wants_all() && !screen.is_set()};
-  Collector search(robot.all(), goal, request, aim, is_satisfied, options.max_attempts,
-                   workspace.collected);
+  Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace, times);
 
   result = search.result();
@@ -198,9 +190,9 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
 
 Solver::Solver(const Robot& robot, const SolverOptions& options) {
   options.validate();
-  impl_ = robot.tips() > 1 ? std::make_shared<const Impl>(robot, options)
-                           : std::make_shared<const Impl>(
-                                 robot, options, Database::build(robot, options.database), robot);
+  std::optional<Database> database;
+  if (robot.tips() == 1) database = Database::build(robot, options.database);
+  impl_ = std::make_shared<const Impl>(robot, options, database, robot);
 }
 
 Solver::Solver(const Robot& robot, const SolverOptions& options, const Database& database) {

@@ -16,11 +16,9 @@ namespace iksel {
 class TipsSearch;
 
 struct Solver::Impl {
-  /// Of one tip. The nominal robot is the one that the database was built for.
-  Impl(const Robot& robot_in, const SolverOptions& options_in, const Database& database_in,
-       const Robot& nominal_in);
-  /// Of several.
-  Impl(const Robot& robot_in, const SolverOptions& options_in);
+  /// The nominal robot is the one that the database was built for; none: of several tips.
+  Impl(const Robot& robot_in, const SolverOptions& options_in,
+       const std::optional<Database>& database_in, const Robot& nominal_in);
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl();
@@ -72,19 +70,6 @@ struct Solver::Impl {
                StageTimes* times) const;
   Solutions solve_all(const Goal& goal, const SolveAllOptions& all, const SolveRequest& request,
                       Workspace& workspace) const;
-  /// `targets` of all tips at the first waypoint, at the second, ...
-  PathResult solve_path(const std::vector<Pose>& targets, const PathOptions& path,
-                        Workspace& workspace) const;
-  /// Throws InvalidArgumentError unless there is a self-motion to be asked for.
-  void check_self_motion(double spacing) const;
-  [[nodiscard]] SelfMotion self_motion(const Pose& target, double spacing,
-                                       Workspace& workspace) const;
-  /// A batch: `on_row(row, result)` for each row of `pose_at`, in any order and from any thread;
-  /// near_of(row) may be null.
-  template <typename PoseAt, typename Near, typename OnRow>
-  void solve_rows(std::size_t count, const PoseAt& pose_at, const SolveRequest& request,
-                  const Near& near_of, int threads, const OnRow& on_row,
-                  const Progress& progress) const;
   [[nodiscard]] Diagnosis diagnose(const Pose& target, const SolveRequest& request) const;
   [[nodiscard]] Diagnosis diagnose_tips(const std::vector<Pose>& targets,
                                         const SolveRequest& request) const;

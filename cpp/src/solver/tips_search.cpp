@@ -5,6 +5,7 @@
 
 #include "base/low_discrepancy.hpp"
 #include "refine/self_motion.hpp"
+#include "refine/single_refiner.hpp"
 #include "search/first_answer.hpp"
 #include "search/search_parts.hpp"
 #include "seeds/random_seeds.hpp"
@@ -19,41 +20,6 @@ constexpr int kArmAttempts = 64;
 constexpr int kNearbySeeds = 128;
 /// Iterations of a seed while little work is done.
 constexpr int kQuickIterations = 16;
-
-/// All joints of several chains brought to all targets at once: the errors of all tips are rows of
-/// one goal. One seed at a time; the interface is that of search.hpp.
-class TipsRefiner {
- public:
-  /// `goal` must outlive this.
-  TipsRefiner(const Goal& goal, int max_iterations)
-      : goal_(goal), max_iterations_(max_iterations) {}
-
-  [[nodiscard]] int width() const { return 1; }
-  void load_seed(int /*lane*/, const double* q) {
-    q_ = Eigen::Map<const Eigen::VectorXd>(q, goal_.joints().dof());
-    // Each chain was solved without what it shares with others.
-    if (!goal_.joints().sums.empty()) q_ = goal_.joints().clamp(q_);
-  }
-  void load_answer(int lane, const double* q) { load_seed(lane, q); }
-  /// An attempt from beginning to end. Returns the steps.
-  int advance(unsigned /*busy*/) {
-    int steps = 0;
-    has_arrived_ = converge(goal_, max_iterations_, /*aim=*/1, /*wraps=*/true, q_, steps);
-    return steps;
-  }
-  [[nodiscard]] bool has_arrived(int /*lane*/) const { return has_arrived_; }
-  [[nodiscard]] bool is_spent(int /*lane*/) const { return true; }
-  static bool stays(int /*lane*/) { return false; }
-  [[nodiscard]] bool is_to_be_looked_at(int /*lane*/) const { return false; }
-  [[nodiscard]] const JointVector& at(int /*lane*/) const { return q_; }
-  [[nodiscard]] const JointVector& q(int /*lane*/) const { return q_; }
-
- private:
-  const Goal& goal_;
-  int max_iterations_;
-  JointVector q_;
-  bool has_arrived_ = false;
-};
 
 }  // namespace
 
@@ -84,7 +50,17 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
     return Proof::reach;
   }
   ArmSearch arms(*goal.tips(), solvers_, request, options_.seed);
-  TipsRefiner refiner(goal, options_.max_iterations);
+  const int most = options_.max_iterations;
+  // All joints at once: the errors of all tips are rows of one goal.
+  const auto attempt_in = [&](int iterations) {
+    return [&goal, iterations](JointVector& q, int& steps) {
+      // Each chain was solved without what it shares with others.
+      if (!goal.joints().sums.empty()) q = goal.joints().clamp(q);
+      return converge(goal, iterations, /*aim=*/1, /*wraps=*/true, q, steps);
+    };
+  };
+  const auto attempt = attempt_in(most);
+  SingleRefiner refiner(goal.joints().dof(), attempt);
   const auto should_continue = [&] { return answers.should_continue(); };
   const SearchParts<Answers> parts{options_, workspace, answers};
   RowSeeds near = parts.near_seed();
@@ -100,8 +76,8 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
   Proof proof = Proof::none;
   for (const Effort effort : {Effort::quick, Effort::full}) {
     const bool is_quick = effort == Effort::quick;
-    const int most = options_.max_iterations;
-    TipsRefiner steps(goal, is_quick ? std::min(most, kQuickIterations) : most);
+    const auto at_most = attempt_in(is_quick ? std::min(most, kQuickIterations) : most);
+    SingleRefiner steps(goal.joints().dof(), at_most);
     ArmSeeds behind_shared(goal, arms, steps_, effort, collector, work);
     if (is_quick || !is_enough()) {
       if (search(steps, behind_shared, answers, work)) return Proof::none;

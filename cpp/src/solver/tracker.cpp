@@ -29,11 +29,7 @@ JointVector lean(const JointVector& q, const JointVector& to) {
 
 /// How much of a move no joint is too slow for.
 double part_in_time(const JointVector& move, const JointVector& longest) {
-  double part = 1;
-  for (Eigen::Index j = 0; j < move.size(); ++j) {
-    if (std::abs(move[j]) > longest[j]) part = std::min(part, longest[j] / std::abs(move[j]));
-  }
-  return part;
+  return std::min(1.0, (longest.array() / move.array().abs()).minCoeff());
 }
 
 /// How far a pose is from another, by the largest of the weights of position and of rotation.
@@ -201,7 +197,7 @@ Result Tracker::approach(const Goal& goal, double dt) {
     if (!closest_) return result;
     const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
     end = from;
-    descend_to_closest(model, Remainder(goal, weights), kStepsToNext, end, result.iterations);
+    descend_to_closest(Remainder(goal, weights), kStepsToNext, end, result.iterations);
   }
   const JointVector longest = model.joints.longest_moves(dt);
   double part = part_in_time(end - q_, longest);

@@ -10,7 +10,6 @@
 #include "goal/objective_cost.hpp"
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
-#include "iksel/pose.hpp"
 #include "seeds/farthest_first.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -86,17 +85,6 @@ class SolutionRanking {
   JointVector from_;
 };
 
-/// Keeps `count` that lie far from each other, the first among them.
-void keep_apart(const JointSpace& joints, std::size_t count, std::vector<Image>& images) {
-  const std::vector<double> q = joint_values(images);
-  std::vector<Image> kept;
-  kept.reserve(count);
-  for (const std::size_t i : farthest_first(joints, q.data(), images.size(), count)) {
-    kept.push_back(std::move(images[i]));
-  }
-  images = std::move(kept);
-}
-
 /// The solutions found that are free, each at all its images inside the limits or as it is.
 std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
                              const Screen& screen, bool with_images,
@@ -137,7 +125,13 @@ bool take_best(const JointSpace& joints, std::size_t most, bool is_redundant,
                std::vector<Image>& images) {
   if (images.size() <= most) return false;
   if (is_redundant) {
-    keep_apart(joints, most, images);
+    // Those that lie far from each other, the first among them.
+    std::vector<Image> apart;
+    const std::vector<double> q = joint_values(images);
+    for (const std::size_t i : farthest_first(joints, q.data(), images.size(), most)) {
+      apart.push_back(std::move(images[i]));
+    }
+    images = std::move(apart);
     std::sort(images.begin(), images.end(), cheaper);
   } else {
     images.resize(most);

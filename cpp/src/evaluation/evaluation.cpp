@@ -38,15 +38,12 @@ bool is_solution(KdlChain& kdl, const Solver& solver, const Pose& target, const 
          rotation <= options.rotation_tolerance + kFkError && solver.robot().within_limits(q);
 }
 
-/// Value at the quantile; changes the order of the times, which takes less than to sort them all.
-double quantile(std::vector<double>& times, double part) {
+/// Value at the quantile of sorted times.
+double quantile(const std::vector<double>& times, double part) {
   const double position = part * static_cast<double>(times.size() - 1);
-  const auto place = static_cast<std::ptrdiff_t>(position);
-  const auto below = times.begin() + place;
-  std::nth_element(times.begin(), below, times.end());
-  if (below + 1 == times.end()) return *below;
-  const double above = *std::min_element(below + 1, times.end());
-  return *below + (position - static_cast<double>(place)) * (above - *below);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, times.size() - 1);
+  return times[below] + (position - static_cast<double>(below)) * (times[above] - times[below]);
 }
 
 /// FK at random configurations, by KDL.
@@ -103,9 +100,9 @@ void summarize(std::vector<double> times, Evaluation& out) {
   double squares = 0;
   for (const double t : times) squares += (t - out.mean_us) * (t - out.mean_us);
   out.std_us = std::sqrt(squares / n);
-  const auto [least, most] = std::minmax_element(times.begin(), times.end());
-  out.min_us = *least;
-  out.max_us = *most;
+  std::sort(times.begin(), times.end());
+  out.min_us = times.front();
+  out.max_us = times.back();
   out.median_us = quantile(times, 0.5);
   out.p99_us = quantile(times, 0.99);
   out.p999_us = quantile(times, 0.999);

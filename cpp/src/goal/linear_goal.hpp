@@ -6,11 +6,9 @@
 
 namespace iksel {
 
-/// lower <= deviation + J step <= upper. `kRowCount` may be dynamic, with `kMost` rows at most.
-template <int kRowCount, int kMost>
+/// lower <= deviation + J step <= upper. `kRows` may be dynamic, with `kMostRows` at most.
+template <int kRows, int kMostRows>
 struct LinearGoal {
-  static constexpr int kRows = kRowCount;
-  static constexpr int kMostRows = kMost;
   using Vector = Eigen::Matrix<double, kRows, 1, Eigen::ColMajor, kMostRows, 1>;
   using Jacobian =
       Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMaxDof>;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "goal/task_space.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "base/constants.hpp"
 #include "base/rotation.hpp"
 
 namespace iksel {

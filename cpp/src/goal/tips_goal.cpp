@@ -2,7 +2,6 @@
 #include "goal/tips_goal.hpp"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "base/message_text.hpp"

@@ -21,7 +21,6 @@ JointVector BestEffort::from(const JointVector& seed) {
 }
 
 bool descend_into_tolerances(const Goal& goal, JointVector& q) {
-  constexpr int kSteps = 50;
   /// Weights of the rotation that are tried, each halving what is left between two others.
   constexpr int kRounds = 12;
   /// Logarithms of the least and the largest, where a tolerance counts 1.
@@ -39,7 +38,7 @@ bool descend_into_tolerances(const Goal& goal, JointVector& q) {
                               to_vector({}, weight * position_tolerance / rotation_tolerance));
     // An answer would have come to less than this.
     const double most = 0.5 * (1 + weight * weight) * position_tolerance * position_tolerance;
-    if (!(descend_from_seed(remainder, kSteps, q, steps) < most)) return false;
+    if (!(descend_from_seed(remainder, /*most=*/50, q, steps) < most)) return false;
     if (goal.is_solution(q)) return true;
     double position = 0;
     double rotation = 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refine/iterate.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/angle.hpp"
@@ -28,26 +27,6 @@ bool stops_on_growth(const Paper& scheme) {
 bool stops_on_small_step(Iteration iteration) {
   return iteration == Iteration::dls || iteration == Iteration::pinv ||
          iteration == Iteration::pinv_rr || iteration == Iteration::cwpi;
-}
-
-/// `squared_error` is what lm damps by.
-JointVector make_step(const IterationContext& context, const JointVector& q,
-                      const JacobianMatrix& J, const Vector6& e, double squared_error) {
-  const Paper& scheme = context.scheme;
-  switch (scheme.iteration) {
-    case Iteration::dls:
-    case Iteration::pinv:
-    case Iteration::pinv_rr:
-      return inverse_step(context.model, q, J, e, scheme);
-    case Iteration::cwln:
-      return cwln_step(context.model, q, J, e, scheme);
-    case Iteration::cwpi:
-      return cwpi_step(context.model, q, J, e, scheme);
-    case Iteration::lm:
-      break;
-  }
-  return lm_step(context.model.joints, context.model.unit, q, J, e, scheme.damping * squared_error,
-                 scheme.whole_turns);
 }
 
 /// What follows a step besides adding it.
@@ -100,9 +79,22 @@ Standing evaluate(const IterationContext& context, const JointVector& q) {
 
 /// The joint adjustment from q, where what is missing stands clamped in `at`.
 JointVector adjust(const IterationContext& context, const JointVector& q, const Goal::Linear& at) {
-  const double squared_error = at.missing.squaredNorm();
-  const auto step_by = [&](const JacobianMatrix& rows, const Vector6& asked) {
-    return make_step(context, q, rows, asked, squared_error);
+  const Paper& scheme = context.scheme;
+  const double damping = scheme.damping * at.missing.squaredNorm();
+  const auto step_by = [&](const JacobianMatrix& J, const Vector6& e) {
+    switch (scheme.iteration) {
+      case Iteration::dls:
+      case Iteration::pinv:
+      case Iteration::pinv_rr:
+        return inverse_step(context.model, q, J, e, scheme);
+      case Iteration::cwln:
+        return cwln_step(context.model, q, J, e, scheme);
+      case Iteration::cwpi:
+        return cwpi_step(context.model, q, J, e, scheme);
+      case Iteration::lm:
+        break;
+    }
+    return lm_step(context.model.joints, context.model.unit, q, J, e, damping, scheme.whole_turns);
   };
   return context.goal.is_full_pose() ? step_by(at.J, at.missing) : step_into_bounds(at, step_by);
 }
@@ -126,7 +118,7 @@ Outcome iterate(const IterationContext& context, JointVector& q, int& steps) {
       if (model.joints.contains(q.data())) return Outcome::solved;
       outcome = Outcome::outside_limits;
       // Only the paper's first schemes go on from here; the others have nothing left to gain.
-      if (scheme.limits_stop || !stops_on_small_step(scheme.iteration)) return outcome;
+      if (scheme.limits_stop || !small_step_stop) return outcome;
     }
     if (growth_stop && now.position > last_position && now.rotation > last_rotation) return outcome;
     last_position = now.position;

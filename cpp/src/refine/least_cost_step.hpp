@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/pseudo_inverse.hpp"
 #include "kinematics/joint_space.hpp"
@@ -167,11 +166,12 @@ class LeastCostStep {
 template <typename Linear>
 JointVector least_cost_step(const JointSpace& joints, const JointVector& q, const Linear& at,
                             const JointVector& gradient, const JointVector& curvature) {
-  if constexpr (Linear::kRows != Eigen::Dynamic) {
-    using Step = LeastCostStep<Linear::kRows, Linear::kMostRows>;
+  using Vector = typename Linear::Vector;
+  if constexpr (Vector::RowsAtCompileTime != Eigen::Dynamic) {
+    using Step = LeastCostStep<Vector::RowsAtCompileTime, Vector::MaxRowsAtCompileTime>;
     if (joints.sums.empty()) return Step(joints, q, at, gradient, curvature).solve();
   }
-  constexpr int kMost = Linear::kMostRows + kMaxCoupledLimits;
+  constexpr int kMost = Vector::MaxRowsAtCompileTime + kMaxCoupledLimits;
   return LeastCostStep<Eigen::Dynamic, kMost>(joints, q, at, gradient, curvature).solve();
 }
 

@@ -70,7 +70,7 @@ JointVector step_into_bounds(const Linear& at, const Step& step) {
   constexpr int kRounds = 3;
   typename Linear::Vector asked = at.missing;
   typename Linear::Jacobian rows = at.J;
-  bool active[Linear::kMostRows];
+  bool active[Linear::Vector::MaxRowsAtCompileTime];
   for (int i = 0; i < at.J.rows(); ++i) {
     active[i] = at.missing[i] != 0 || at.is_fixed(i);
     if (!active[i]) rows.row(i).setZero();

@@ -4,10 +4,12 @@
 namespace iksel {
 namespace {
 
+/// Between the ends of a difference that stands for a derivative [rad or m].
+constexpr double kDifference = 1e-6;
+
 /// The second derivative by differences of the gradient.
 SquareMatrix difference_gradients(const Remainder& remainder, const JointVector& q,
                                   const JointVector& gradient) {
-  constexpr double kDifference = 1e-6;
   const auto n = q.size();
   SquareMatrix H(n, n);
   JointVector moved = q;
@@ -94,7 +96,6 @@ Matrix6 Remainder::stiffness(const Pose& pose, const AtPose& at) const {
     return K;
   }
   // The task's swing and twist make a long formula of the rotation's.
-  constexpr double kDifference = 1e-6;
   Pose turned = pose;
   for (int k = 0; k < 3; ++k) {
     turned.linear() =

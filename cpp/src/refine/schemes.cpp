@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/pseudo_inverse.hpp"
-
 namespace iksel {
 JointVector joint_weights(const ChainModel& model, const JointVector& q, double margin) {
   JointVector weights = JointVector::Ones(model.dof);
@@ -23,17 +21,21 @@ JointVector joint_weights(const ChainModel& model, const JointVector& q, double 
   return weights;
 }
 
+namespace {
+
+/// c = -(I - W) phi, phi_i = 0.1 (2 q_i - lo_i - hi_i) / (hi_i - lo_i).
 JointVector pull_back(const ChainModel& model, const JointVector& q, const JointVector& weights) {
-  constexpr double kGain = 0.1;
   JointVector c = JointVector::Zero(model.dof);
   for (int i = 0; i < model.dof; ++i) {
     const double range = model.joints.upper[i] - model.joints.lower[i];
     if (!std::isfinite(range)) continue;
-    c[i] = -(1 - weights[i]) * kGain * (2 * q[i] - model.joints.lower[i] - model.joints.upper[i]) /
+    c[i] = -(1 - weights[i]) * 0.1 * (2 * q[i] - model.joints.lower[i] - model.joints.upper[i]) /
            range;
   }
   return c;
 }
+
+}  // namespace
 
 JointVector dls_step(const JacobianMatrix& J, const Vector6& e, const Paper& scheme) {
   if (scheme.damping == 0) return TruncatedSvd(J, scheme.pinv_cutoff).solve(e);
@@ -57,11 +59,10 @@ JointVector inverse_step(const ChainModel& model, const JointVector& q, const Ja
 
 JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
                       const Vector6& e, const Paper& scheme) {
-  constexpr double kDamping = 1e-9;
   const JointVector weights = joint_weights(model, q, scheme.limit_margin);
   const JointVector c = pull_back(model, q, weights);
   Matrix6 A = J * weights.asDiagonal() * J.transpose();
-  A.diagonal().array() += kDamping;
+  A.diagonal().array() += 1e-9;
   const Vector6 y = solve_symmetric(A, e - J * c);
   return c + weights.cwiseProduct(J.transpose() * y);
 }

@@ -23,11 +23,7 @@ JointVector inverse_step(const ChainModel& model, const JointVector& q, const Ja
 /// at each end of the range, s the distance to the limit over the margin (Huang et al. 2016).
 JointVector joint_weights(const ChainModel& model, const JointVector& q, double margin);
 
-/// Pull-back towards mid-range, c = -(I - W) phi, phi_i = 0.1 (2 q_i - lo_i - hi_i) / (hi_i -
-/// lo_i).
-JointVector pull_back(const ChainModel& model, const JointVector& q, const JointVector& weights);
-
-/// cwln: c + W J^T (J W J^T + 1e-9 I)^-1 (e - J c).
+/// cwln, with a pull-back c towards mid-range: c + W J^T (J W J^T + 1e-9 I)^-1 (e - J c).
 JointVector cwln_step(const ChainModel& model, const JointVector& q, const JacobianMatrix& J,
                       const Vector6& e, const Paper& scheme);
 

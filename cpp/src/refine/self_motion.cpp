@@ -40,7 +40,6 @@ int descend_rows(const Goal& goal, const JointCost& cost, int most, JointVector&
   /// Longest step of a joint, within which the pose stays near enough to be corrected [rad or m].
   constexpr double kLongest = 0.5;
   constexpr double kSettled = 1e-7;
-  constexpr int kCorrections = 8;
   const JointSpace& joints = goal.joints();
   JointVector gradient(joints.dof());
   JointVector curvature(joints.dof());
@@ -57,7 +56,7 @@ int descend_rows(const Goal& goal, const JointCost& cost, int most, JointVector&
     for (int halving = 0; halving < 8 && !better; ++halving, scale /= 2) {
       JointVector next = joints.clamp(q + scale * step);
       int corrections = 0;
-      if (!converge_rows<Linear>(goal, kCorrections, kWellInside, /*wraps=*/false, next,
+      if (!converge_rows<Linear>(goal, /*most=*/8, kWellInside, /*wraps=*/false, next,
                                  corrections)) {
         continue;
       }
@@ -75,7 +74,7 @@ int descend_rows(const Goal& goal, const JointCost& cost, int most, JointVector&
 
 }  // namespace
 
-bool converge(const Goal& goal, int most, double aim, bool wraps, JointVector& q, int& steps) {
+bool converge(const Goal& goal, int most, JointVector& q, int& steps, double aim, bool wraps) {
   return goal.tips() == nullptr ? converge_rows<Goal::Linear>(goal, most, aim, wraps, q, steps)
                                 : converge_rows<TipsGoal::Linear>(goal, most, aim, wraps, q, steps);
 }

@@ -15,10 +15,8 @@ inline constexpr double kWellInside = 0.01;
 /// of the tolerances, or to all of it in the last of `most` steps; `steps` counts those taken.
 /// `wraps`: joints that turn on and on are not held at their limits, but wrapped at the end. False
 /// if it does not get within the tolerances and the limits.
-bool converge(const Goal& goal, int most, double aim, bool wraps, JointVector& q, int& steps);
-inline bool converge(const Goal& goal, int most, JointVector& q, int& steps) {
-  return converge(goal, most, kWellInside, /*wraps=*/false, q, steps);
-}
+bool converge(const Goal& goal, int most, JointVector& q, int& steps, double aim = kWellInside,
+              bool wraps = false);
 inline bool converge(const Goal& goal, int most, JointVector& q) {
   int steps = 0;
   return converge(goal, most, q, steps);

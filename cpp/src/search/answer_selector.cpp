@@ -113,9 +113,8 @@ void AnswerSelector::descend(JointVector& q) {
   if (nearest_to_) {
     steps_ += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
   } else {
-    constexpr int kObjectiveSteps = 50;
     const ObjectiveCost cost(goal_.robot(), request_.objective);
-    steps_ += descend_self_motion(goal_, JointCost(cost), kObjectiveSteps, q);
+    steps_ += descend_self_motion(goal_, JointCost(cost), /*most=*/50, q);
   }
 }
 

@@ -23,7 +23,6 @@ constexpr float kAlmost = 3e-4F;
 constexpr float kRounding = 2e-6F;
 constexpr int kAlmostDescents = 8;
 constexpr std::size_t kSweptDescents = 2;
-constexpr int kDescentSteps = 40;
 /// Seeds of the screen nearer than this in every joint end at the same place [rad or m].
 constexpr double kSameSeed = 0.1;
 /// Remainders that differ by less, relative to them, are the same.
@@ -45,7 +44,7 @@ class Minima {
 
   void descend(const JointVector& seed) {
     LocalMinimum end{0, 0, static_cast<int>(found_.size()), seed};
-    end.remainder = descend_from_seed(remainder_, kDescentSteps, end.q, result_.iterations, best_);
+    end.remainder = descend_from_seed(remainder_, /*most=*/40, end.q, result_.iterations, best_);
     if (only_best_counts_) best_ = std::min(best_, end.remainder);
     ++result_.attempts;
     if (request_.near) {

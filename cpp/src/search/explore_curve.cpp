@@ -90,16 +90,17 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }
 
+/// Between points of arcs no farther apart, a straight line is near enough to the curve [rad].
+constexpr double kSpacing = 0.05;
+
 /// The solution nearest to it on the arcs that have ends, or that what was found lies on. Returns
 /// whether that is known.
 bool explore_arcs(const AllSearch& parts, const Pose& Y) {
-  /// Between points no farther apart, a straight line is near enough to the curve [rad].
-  constexpr double kStraight = 0.05;
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   const double* known = answers.has_any() ? answers.solution(0) : nullptr;
   const std::vector<Curve::Arc>& arcs =
-      lanes.find_arcs(parts.goal.target(), Y, kStraight, known, answers.count());
+      lanes.find_arcs(parts.goal.target(), Y, kSpacing, known, answers.count());
   const auto& [near, move] = answers.nearest_to();
   const std::vector<NearPlace> places = find_nearest_on_arcs(arcs, parts.model.joints, near, move);
   for (const NearPlace& place : places) answers.descend_from(place.q);
@@ -109,7 +110,6 @@ bool explore_arcs(const AllSearch& parts, const Pose& Y) {
 
 /// The free solutions nearest to it.
 Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
-  constexpr double kSpacing = 0.05;
   /// So many of them are refined.
   constexpr std::size_t kMost = 16;
   Workspace::InLanes& lanes = *parts.workspace.lanes;

@@ -122,7 +122,8 @@ Proof search_in_lanes(const Parts& parts) {
   return Proof::none;
 }
 
-/// The proof that there are no answers but those found.
+}  // namespace
+
 template <typename Answers>
 Proof search_for(const SolverOptions& options, Answers& answers, Workspace& workspace,
                  StageTimes* times) {
@@ -137,18 +138,7 @@ Proof search_for(const SolverOptions& options, Answers& answers, Workspace& work
   return Proof::none;
 }
 
-}  // namespace
-
-Result find_first(const SolverOptions& options, const Goal& goal, const SolveRequest& request,
-                  Workspace& workspace, StageTimes* times, Effort effort) {
-  FirstAnswer answers(workspace.scheme.whole_turns, goal, request, options.max_attempts, effort);
-  return answers.result(search_for(options, answers, workspace, times));
-}
-
-void collect(const SolverOptions& options, Collector& collector, Workspace& workspace,
-             StageTimes* times) {
-  collector.offer_near();
-  collector.conclude(search_for(options, collector, workspace, times));
-}
+template Proof search_for(const SolverOptions&, FirstAnswer&, Workspace&, StageTimes*);
+template Proof search_for(const SolverOptions&, Collector&, Workspace&, StageTimes*);
 
 }  // namespace iksel

@@ -2,19 +2,15 @@
 // Which seeds and which refiner a goal of one tip is searched with.
 #pragma once
 
-#include "iksel/request.hpp"
 #include "search/context.hpp"
-#include "search/search_state.hpp"
+#include "search/first_answer.hpp"
 
 namespace iksel {
 
-/// The first answer; `times` may be null; `request` is read for its seeds, `near` and deadline
-/// only.
-Result find_first(const SolverOptions& options, const Goal& goal, const SolveRequest& request,
-                  Workspace& workspace, StageTimes* times, Effort effort = Effort::full);
-
-/// Collects solutions in workspace.collected.found, until the collector has enough.
-void collect(const SolverOptions& options, Collector& collector, Workspace& workspace,
-             StageTimes* times = nullptr);
+/// For a FirstAnswer or a Collector, until it wants no more; `times` may be null. The proof that
+/// there are no answers but those found.
+template <typename Answers>
+Proof search_for(const SolverOptions& options, Answers& answers, Workspace& workspace,
+                 StageTimes* times);
 
 }  // namespace iksel

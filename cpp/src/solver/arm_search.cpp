@@ -86,8 +86,7 @@ Result ArmSearch::solve(const Solver& solver, const ChainPart& part, const Pose&
     const Solver::Impl& of = *solver.impl_;
     const TaskSpace task = of.task_of(request);
     const WorkspacePool::Lease lease(of.workspaces);
-    return find_first(of.options, Goal(of.model(), task, target), request, lease.get(), nullptr,
-                      effort);
+    return of.find_first(Goal(of.model(), task, target), request, lease.get(), nullptr, effort);
   };
   Result result = effort == Effort::quick ? solve_quickly() : solver.solve(target, request);
   if (has_joints(result.status)) put(result.q, part.joints, q);

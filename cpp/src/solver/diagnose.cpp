@@ -139,8 +139,7 @@ class Diagnoser {
     if (!position.success()) return false;
     // From many configurations that have the position towards the rotation, the position weighing
     // more; then all the way back to the position.
-    constexpr double kLittle = 0.01;
-    BestEffort effort = make_effort(goal_, kLittle);
+    BestEffort effort = make_effort(goal_, /*part=*/0.01);
     SolveAllOptions spread_out;
     spread_out.max = kEfforts;
     spread_out.min_distance = 0.1;

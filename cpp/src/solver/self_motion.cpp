@@ -2,7 +2,6 @@
 #include "iksel/self_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "base/message_text.hpp"

@@ -10,7 +10,6 @@
 #include "goal/objective_cost.hpp"
 #include "goal/screen.hpp"
 #include "iksel/error.hpp"
-#include "iksel/pose.hpp"
 #include "seeds/farthest_first.hpp"
 #include "solver/solver_impl.hpp"
 
@@ -86,18 +85,6 @@ class SolutionRanking {
   JointVector from_;
 };
 
-/// Keeps `count` that lie far from each other, the first among them.
-void keep_apart(const lanes::LaneKernels& kernels, const JointSpace& joints, std::size_t count,
-                std::vector<Image>& images) {
-  const std::vector<double> q = joint_values(images);
-  std::vector<Image> kept;
-  kept.reserve(count);
-  for (const std::size_t i : farthest_first(kernels, joints, q.data(), images.size(), count)) {
-    kept.push_back(std::move(images[i]));
-  }
-  images = std::move(kept);
-}
-
 /// The solutions found that are free, each at all its images inside the limits or as it is.
 std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
                              const Screen& screen, bool with_images,
@@ -138,7 +125,13 @@ bool take_best(const lanes::LaneKernels& kernels, const JointSpace& joints, std:
                bool is_redundant, std::vector<Image>& images) {
   if (images.size() <= most) return false;
   if (is_redundant) {
-    keep_apart(kernels, joints, most, images);
+    // Those that lie far from each other, the first among them.
+    std::vector<Image> apart;
+    const std::vector<double> q = joint_values(images);
+    for (const std::size_t i : farthest_first(kernels, joints, q.data(), images.size(), most)) {
+      apart.push_back(std::move(images[i]));
+    }
+    images = std::move(apart);
     std::sort(images.begin(), images.end(), cheaper);
   } else {
     images.resize(most);
@@ -189,7 +182,8 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
                images.end());
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  are_left_out |= take_best(workspaces.shared().kernels, goal.joints(), most, goal.is_redundant(), images);
+  are_left_out |=
+      take_best(workspaces.shared().kernels, goal.joints(), most, goal.is_redundant(), images);
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());

@@ -130,15 +130,22 @@ std::vector<TaskSpace> Solver::Impl::tasks_of(const TargetCriteria& criteria) co
   return tasks;
 }
 
+template <typename Answers>
+Proof Solver::Impl::search_for(Answers& answers, Workspace& workspace, StageTimes* times) const {
+  return tips ? tips->search_for(answers, workspace)
+              : iksel::search_for(options, answers, workspace, times);
+}
+
 Result Solver::Impl::find_first(const Goal& goal, const SolveRequest& request, Workspace& workspace,
-                                StageTimes* times) const {
-  if (tips) return tips->find_first(goal, request, workspace);
-  return iksel::find_first(options, goal, request, workspace, times);
+                                StageTimes* times, Effort effort) const {
+  const bool wraps = tips != nullptr || workspace.scheme.whole_turns;
+  FirstAnswer answers(wraps, goal, request, options.max_attempts, effort);
+  return answers.result(search_for(answers, workspace, times));
 }
 
 void Solver::Impl::collect(Collector& collector, Workspace& workspace, StageTimes* times) const {
-  if (tips) return tips->collect(collector, workspace);
-  iksel::collect(options, collector, workspace, times);
+  collector.offer_near();
+  collector.conclude(search_for(collector, workspace, times));
 }
 
 Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Workspace& workspace,

@@ -59,9 +59,12 @@ struct Solver::Impl {
 
   /// The first answer that there is: of a request its seeds, `near` and deadline are read.
   Result find_first(const Goal& goal, const SolveRequest& request, Workspace& workspace,
-                    StageTimes* times) const;
-  /// As collect in search/run.hpp.
+                    StageTimes* times, Effort effort = Effort::full) const;
+  /// Collects solutions in workspace.collected.found, until the collector has enough.
   void collect(Collector& collector, Workspace& workspace, StageTimes* times = nullptr) const;
+  /// As in search/run.hpp, of any number of tips.
+  template <typename Answers>
+  Proof search_for(Answers& answers, Workspace& workspace, StageTimes* times) const;
   /// The best answer to the whole request, but for `closest`.
   Result find_answer(const Goal& goal, const SolveRequest& request, Workspace& workspace,
                      StageTimes* times) const;

@@ -2,6 +2,7 @@
 #include "solver/tips_search.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "base/low_discrepancy.hpp"
 #include "refine/self_motion.hpp"
@@ -40,11 +41,12 @@ TipsSearch::TipsSearch(const TipsModel& model, const SolverOptions& options)
 }
 
 template <typename Answers>
-Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
-                             Workspace& workspace) const {
+Proof TipsSearch::search_for(Answers& answers, Workspace& workspace) const {
   const Goal& goal = answers.goal();
   const SolveRequest& request = answers.request();
   Work& work = answers.work;
+  const Collector* collector = nullptr;
+  if constexpr (std::is_same_v<Answers, Collector>) collector = &answers;
   if (const int tip = goal.tips()->first_out_of_reach(); tip >= 0) {
     answers.put_unreachable(tip, Status::out_of_reach);
     return Proof::reach;
@@ -56,7 +58,7 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
     return [&goal, iterations](JointVector& q, int& steps) {
       // Each chain was solved without what it shares with others.
       if (!goal.joints().sums.empty()) q = goal.joints().clamp(q);
-      return converge(goal, iterations, /*aim=*/1, /*wraps=*/true, q, steps);
+      return converge(goal, iterations, q, steps, /*aim=*/1, /*wraps=*/true);
     };
   };
   const auto attempt = attempt_in(most);
@@ -96,15 +98,7 @@ Proof TipsSearch::search_for(Answers& answers, const Collector* collector,
   return proof;
 }
 
-Result TipsSearch::find_first(const Goal& goal, const SolveRequest& request,
-                              Workspace& workspace) const {
-  FirstAnswer answers(/*wraps=*/true, goal, request, options_.max_attempts);
-  return answers.result(search_for(answers, nullptr, workspace));
-}
-
-void TipsSearch::collect(Collector& collector, Workspace& workspace) const {
-  collector.offer_near();
-  collector.conclude(search_for(collector, &collector, workspace));
-}
+template Proof TipsSearch::search_for(FirstAnswer&, Workspace&) const;
+template Proof TipsSearch::search_for(Collector&, Workspace&) const;
 
 }  // namespace iksel

@@ -17,13 +17,10 @@ class TipsSearch {
   }
 
   /// As in search/run.hpp.
-  Result find_first(const Goal& goal, const SolveRequest& request, Workspace& workspace) const;
-  void collect(Collector& collector, Workspace& workspace) const;
+  template <typename Answers>
+  Proof search_for(Answers& answers, Workspace& workspace) const;
 
  private:
-  template <typename Answers>
-  Proof search_for(Answers& answers, const Collector* collector, Workspace& workspace) const;
-
   const SolverOptions& options_;
   std::vector<double> steps_;  ///< between values of the shared joints
   std::vector<TipSolvers> solvers_;

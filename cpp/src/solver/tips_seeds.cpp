@@ -8,16 +8,16 @@ namespace iksel {
 namespace {
 
 /// Values of the shared joints that are tried before all joints are iterated, with little work and
-/// with all; and where many answers are wanted. Of 16, 48, 96 and 256 tried with little, two Pandas
+/// with all. Of 16, 48, 96 and 256 tried with little, two Pandas
 /// took 15.0, 13.3, 12.1 and 12.4 us in the mean (python -m bench whole_body two_pandas).
 constexpr int kQuickValues = 96;
 constexpr int kSharedValues = 32;
+/// Where many answers are wanted; and values at which the nearest is looked for where it may be
+/// anywhere within the limits, if the arms' nearest are known. Of 1,500 moves of random pairs of
+/// arms on a joint, from anywhere, 13 were longer than by 1,500 values with 192, 10 with 256 and 7
+/// with 384, before kWorthwhile; with it 5 with 224 and 4 with 256 (moves as of python -m bench
+/// hands pairs).
 constexpr int kManyValues = 256;
-/// Values at which the nearest is looked for where it may be anywhere within the limits, if the
-/// arms' nearest are known. Of 1,500 moves of random pairs of arms on a joint, from anywhere, 13
-/// were longer than by 1,500 values with 192, 10 with 256 and 7 with 384, before kWorthwhile; with
-/// it 5 with 224 and 4 with 256 (moves as of python -m bench hands pairs).
-constexpr int kNearValues = 256;
 /// Seeds of one chain each, after the first values.
 constexpr int kChainSeeds = 24;
 /// Combinations of the arms' solutions behind one value, at most.
@@ -104,14 +104,12 @@ ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>&
       knows_nearest_(knows_nearest(arms, collector)),
       values_(model_, steps,
               model_.shared.empty()                       ? 1
-              : to_ == nullptr && collector != nullptr    ? kManyValues
-              : knows_nearest_                            ? kNearValues
+              : wants_many() || knows_nearest_            ? kManyValues
               : to_ == nullptr && effort == Effort::quick ? kQuickValues
                                                           : kSharedValues,
               to_),
       order_(goal.tips()->order()) {
-  const bool wants_many = collector != nullptr && to_ == nullptr;
-  of_each_ = wants_many || goal.scene() != nullptr ? solutions_of_each(model_.tip_count()) : 1;
+  of_each_ = wants_many() || goal.scene() != nullptr ? solutions_of_each(model_.tip_count()) : 1;
 }
 
 bool ArmSeeds::next_stage() {

@@ -70,6 +70,7 @@ class ArmSeeds {
   }
 
  private:
+  [[nodiscard]] bool wants_many() const { return collector_ != nullptr && to_ == nullptr; }
   /// Values of the shared joints, as in q, and of those arms that were solved behind them the
   /// solutions.
   struct Behind {

@@ -97,12 +97,11 @@ double Tracker::tool_way(const JointVector& from, const JointVector& to) const {
 }
 
 double Tracker::part_for_tool(const JointVector& move, double part, double dt) const {
-  constexpr double kShorter = 0.9;
   const double most = kFastestTool * state_.speed * dt;
   while (part > 0) {
     const double way = tool_way(q_, q_ + part * move);
     if (way <= most) break;
-    part *= std::max(kShorter * most / way, 1e-3);
+    part *= std::max(0.9 * most / way, 1e-3);
   }
   return part;
 }

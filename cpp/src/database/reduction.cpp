@@ -46,9 +46,8 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
 
 lanes::SeedTarget make_seed_target(const Pose& Y) {
   lanes::SeedTarget target{};
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    target.target[row] = static_cast<float>(full_pose_row(Y, row));
-  }
+  visit_rows(Y, 1,
+             [&](int row, double number) { target.target[row] = static_cast<float>(number); });
   return target;
 }
 

@@ -68,16 +68,9 @@ void LaneRefiner::make_task(const TaskSpace& task) {
   for (int i = 0; i < 3; ++i) lane_task_.tcp[i] = tip_(i, 3) * per_metre_;
 }
 
-void LaneRefiner::set_target(const Pose& Y, const Pose& T_base_tcp, int first, int count) {
-  const auto write = [&](int row, double value) {
-    std::fill_n(&pack_.target[row][first], count, value);
-  };
-  if (task_ == nullptr) {
-    for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-      write(row, full_pose_row(Y, row, per_metre_));
-    }
-    return;
-  }
+template <typename Write>
+void LaneRefiner::make_rows(const Pose& Y, const Pose& T_base_tcp, const Write& write) const {
+  if (task_ == nullptr) return visit_rows(Y, per_metre_, write);
   const auto write_columns = [&](int at, const Eigen::Matrix3d& columns) {
     for (int k = 0; k < 9; ++k) write(at + k, columns(k % 3, k / 3));
   };
@@ -87,6 +80,15 @@ void LaneRefiner::set_target(const Pose& Y, const Pose& T_base_tcp, int first, i
   for (int i = 0; i < 3; ++i) write(i, X(i, 3) * per_metre_);
   write_columns(3, W);
   write_columns(12, tip_.linear() * X.linear().transpose() * W);
+}
+
+void LaneRefiner::set_target(const Pose& Y, const Pose& T_base_tcp) {
+  make_rows(Y, T_base_tcp,
+            [&](int row, double value) { std::fill_n(pack_.target[row], lanes::kWidth, value); });
+}
+
+void LaneRefiner::set_target(int lane, const Pose& Y, const Pose& T_base_tcp) {
+  make_rows(Y, T_base_tcp, [&](int row, double value) { pack_.target[row][lane] = value; });
 }
 
 void LaneRefiner::load_seed(int lane, const double* q) {

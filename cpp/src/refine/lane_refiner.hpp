@@ -57,9 +57,10 @@ class LaneRefiner {
   /// Before a search for goals of one task, which has to outlive it.
   void begin(const TaskSpace& task, const Patience& patience, Width width);
 
-  /// What all lanes are to reach, or `count` of them from `first` on: of a full pose Y
-  /// (reduction.hpp) is read, of a task the pose of the TCP.
-  void set_target(const Pose& Y, const Pose& T_base_tcp, int first = 0, int count = lanes::kWidth);
+  /// What all lanes are to reach, or one of them: of a full pose Y (reduction.hpp) is read, of a
+  /// task the pose of the TCP.
+  void set_target(const Pose& Y, const Pose& T_base_tcp);
+  void set_target(int lane, const Pose& Y, const Pose& T_base_tcp);
 
   /// Starts a lane at `value(joint)`, inside the limits.
   template <typename Value>
@@ -126,6 +127,8 @@ class LaneRefiner {
   }
 
  private:
+  template <typename Write>
+  void make_rows(const Pose& Y, const Pose& T_base_tcp, const Write& write) const;
   /// Brings a lane's seed inside the limits, by whole turns and along sums.
   void hold_sums(int lane);
   void make_task(const TaskSpace& task);

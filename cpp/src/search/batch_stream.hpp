@@ -26,7 +26,7 @@ class LeafLanes {
   /// The lane's target from now on. Y (reduction.hpp) is that of the pose nearest to it that the
   /// task allows.
   void begin(LaneRefiner& refiner, int lane, const Goal& goal, const Pose& Y) {
-    refiner.set_target(Y, goal.target(), lane, 1);
+    refiner.set_target(lane, Y, goal.target());
     lanes_[lane] = {Y, 0};
   }
   /// Starts the lane at the target's next seed; false if there are no more.

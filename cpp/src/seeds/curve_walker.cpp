@@ -71,9 +71,8 @@ CurveWalker::CurveWalker(const ChainModel& model, const lanes::LaneKernels& kern
 
 void CurveWalker::set_target(const Pose& Y, double longest) {
   pack_.longest = longest;
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = probe_.target[row] = full_pose_row(Y, row);
-  }
+  visit_rows(Y, 1,
+             [&](int row, double number) { pack_.target[row] = probe_.target[row] = number; });
 }
 
 bool CurveWalker::is_inside(const Joints& q) const {

@@ -16,9 +16,8 @@ SeedScreen::SeedScreen(const ChainModel& model, const SolverOptions& options,
 }
 
 void SeedScreen::begin(const Pose& Y) {
-  for (int row = 0; row < lanes::kFullPoseRows; ++row) {
-    pack_.target[row] = static_cast<float>(full_pose_row(Y, row, per_metre_));
-  }
+  visit_rows(Y, per_metre_,
+             [&](int row, double number) { pack_.target[row] = static_cast<float>(number); });
   filled_ = 0;
 }
 

@@ -7,11 +7,14 @@
 
 namespace iksel {
 
-/// The `row`-th number of Y (reduction.hpp) as packs have it: its position, in a unit of which a
-/// metre has so many, then its columns.
-inline double full_pose_row(const Pose& Y, int row, double per_metre = 1) {
-  const double number = Y(row % 3, (row / 3 + 3) % 4);
-  return row < 3 ? number * per_metre : number;
+/// Calls write(row, number) of the rows by which packs have Y (reduction.hpp): its position, in a
+/// unit of which a metre has so many, then its columns.
+template <typename Write>
+void visit_rows(const Pose& Y, double per_metre, const Write& write) {
+  for (int i = 0; i < 3; ++i) {
+    write(i, Y(i, 3) * per_metre);
+    for (int k = 0; k < 3; ++k) write(3 + 3 * k + i, Y(i, k));
+  }
 }
 
 /// True if the degrees of freedom are the joints, one to one: no mimic joints.

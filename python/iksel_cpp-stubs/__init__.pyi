@@ -2443,7 +2443,7 @@ class Solver:
         Raises:
             InvalidArgumentError: wrong shape or dtype, a pose that is not rigid, a number out of range.
         """
-    def tracker(self, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> Tracker:
+    def tracker(self, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> Tracker:
         """
         Tracker(self, start, ...).
         """
@@ -2605,7 +2605,7 @@ class Tracker:
     """
     Follows a stream of poses: each answer continues from the last, within the velocity limits. Not to be used from two threads at once; allocates nothing after construction.
     """
-    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None) -> None:
+    def __init__(self, solver: Solver, start: numpy.typing.ArrayLike, *, closest: bool | numpy.typing.ArrayLike | None = None, task: Task | collections.abc.Mapping[str, typing.Any] | None = None, tasks: collections.abc.Sequence[Task | collections.abc.Mapping[str, typing.Any]] | None = None, in_frame_of: collections.abc.Sequence[int | None] | None = None, objective: Objective | str | collections.abc.Callable[[numpy.ndarray], float] | None = None) -> None:
         """
         Begins where the arm is.
 
@@ -2620,10 +2620,12 @@ class Tracker:
                 was.
             task, tasks, in_frame_of: what of the poses has to be reached, and in the frame of which other
                 tip they are, as in Solver.solve.
+            objective: an Objective; an arm that its poses leave free moves to where it is least, as fast
+                as the poses leave it, and in half a second if it went on as it begins.
 
         Raises:
-            InvalidArgumentError: wrong shape or dtype, a number that is not finite, or tasks or frames
-                that do not fit the tips.
+            InvalidArgumentError: wrong shape or dtype, a number that is not finite, or tasks, frames or
+                an objective that do not fit the robot.
         """
     def __repr__(self) -> str:
         ...

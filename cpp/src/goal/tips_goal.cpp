@@ -57,7 +57,7 @@ Pose TipsGoal::pose_of(int tip, const JointVector& q, JacobianMatrix* J) const {
   const ChainPart& chain = model_.tip(tip).chain;
   if (J == nullptr) return chain.fk(q);
   Jacobian of_chain;
-  const Pose pose = to_pose(chain.model().fk_jacobian(picked(q, chain.joints).data(), of_chain));
+  Pose pose = to_pose(chain.model().fk_jacobian(picked(q, chain.joints).data(), of_chain));
   J->setZero(6, model_.dof);
   put_columns(of_chain, chain.joints, *J);
   return pose;

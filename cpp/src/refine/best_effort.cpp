@@ -52,6 +52,7 @@ bool descend_into_tolerances(const Goal& goal, JointVector& q) {
 std::vector<JointVector> BestEffort::from_anywhere(int n, std::uint64_t seed) {
   Random random(seed);
   std::vector<JointVector> ends;
+  ends.reserve(static_cast<std::size_t>(n));
   const JointSpace& joints = remainder_.goal().joints();
   for (int i = 0; i < n; ++i) ends.push_back(from(joints.sample(random)));
   return ends;

@@ -48,7 +48,7 @@ void check_length(const char* name, double length, bool may_be_zero) {
 
 /// As check_pose, and throws where the place is too far away.
 Pose check_place(const Pose& T_base_obstacle) {
-  const Pose pose = check_pose(T_base_obstacle);
+  Pose pose = check_pose(T_base_obstacle);
   check_size("pose", largest_of(pose.translation()));
   return pose;
 }

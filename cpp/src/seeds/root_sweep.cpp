@@ -28,10 +28,10 @@ struct Apart {
 /// Of four million reachable targets of gen3_6dof, whose axes lie off, three had been lost; of a
 /// million poses of twenty random arms, off by up to 0.7 of the tolerances, 144 (python -m bench
 /// lost --random 20 --targets 50000 --off 0.7 --seed 4000 --builds offset_wrist).
-constexpr Apart kFarther{2, 8};
+constexpr Apart kFartherApart{2, 8};
 /// But here only what is as near to an answer as a single root: of 100,000 targets of gen3_6dof
 /// near singularities two had been lost, where four roots all but meet.
-constexpr Apart kFarthest{4, 32};
+constexpr Apart kFarthestApart{4, 32};
 
 /// Where a product over all branches turns and is no more than this many times the square of what
 /// all but double roots are off, there may be roots that are farther apart: elbow and wrist are
@@ -79,9 +79,9 @@ RootSweep::RootSweep(const ChainModel& model, const ClosedFormChain& chain, bool
       tolerance_(tolerance),
       concludes_(concludes_from_branches(is_nominal, tolerance)),
       vague_(Apart{1, 1}.of(tolerance, chain.deviation)),
-      farther_(kFarther.of(tolerance, chain.deviation)),
+      farther_(kFartherApart.of(tolerance, chain.deviation)),
       vague_divisor_(std::pow(kBesideAxis * (tolerance + chain.deviation), 2)),
-      roots_(make_finder(model, chain.held, kFarthest.of(tolerance, chain.deviation),
+      roots_(make_finder(model, chain.held, kFarthestApart.of(tolerance, chain.deviation),
                          std::max(kPrecision, kShare * chain.deviation), kernels)),
       polynomial_(kernels) {
   are_answers_ = is_nominal && chain.deviation <= kShare * tolerance;

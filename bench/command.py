@@ -27,6 +27,7 @@ from bench import (
     tips,
 )
 from bench.analytic import command as analytic_command
+from bench.constant import command as constant_command
 from bench.learned import command as learned_command
 from bench.learned import train_command
 from bench.paper import command as text_command
@@ -68,6 +69,7 @@ ALONE = {
     "hands": hands,
     "scene": scene,
     "body": body,
+    "constant": constant_command,
 }
 """Commands that measure by themselves and print."""
 

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command that tries other values of a constant. Nothing is compiled. No times."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+pytest.importorskip("bench", reason="the benchmarks are in the repository only")
+
+from bench import command
+from bench.constant import asked
+from bench.constant.command import compared
+from bench.constant.variant import Constant, constants, find, patched
+
+
+def test_all_constants_are_known():
+    known = constants()
+    assert len({(constant.file, constant.name) for constant in known}) > 200
+    assert Constant("cpp/src/base/constants.hpp", "kMaxMovingJoints", "64") in known
+
+
+def test_a_constant_is_found_by_its_name_and_file():
+    constant = find("sweep.cpp:kEvery")
+    assert (constant.file, constant.name) == ("cpp/src/seeds/sweep.cpp", "kEvery")
+
+
+@pytest.mark.parametrize("wanted", ["kNoneSuch", "sweep.cpp:kNoneSuch"])
+def test_an_unknown_constant_is_refused_with_what_there_is(wanted):
+    with pytest.raises(SystemExit, match=f"no constants {wanted} .*sweep.cpp:kEvery"):
+        find(wanted)
+
+
+def test_a_name_of_several_is_refused_with_their_files():
+    with pytest.raises(SystemExit, match=r"constants kRounds .*root_sweep.cpp:kRounds"):
+        find("kRounds")
+
+
+def test_one_definition_is_changed():
+    text = "constexpr double kFar = 1e4;  // [rad]\nint kFarther = 1;\n"
+    assert patched(text, "kFar", "2.5") == text.replace("1e4", "2.5")
+    with pytest.raises(ValueError, match="0 times"):
+        patched(text, "kNear", "1")
+
+
+def test_answers_are_the_same_again(capsys):
+    asked.main("1", "31000", "1", "srs")
+    first = json.loads(capsys.readouterr().out)
+    asked.main("1", "31000", "1", "srs")
+    again = json.loads(capsys.readouterr().out)
+    assert first["batch, 7"]["failed"] == 0
+    for kind, row in first.items():
+        assert row["asked"] > 0, kind
+        assert again[kind] | {"cpu_s": 0} == row | {"cpu_s": 0}, kind
+
+
+def test_the_table_says_what_changed():
+    row = {"asked": 5, "failed": 1, "hash": "a", "cpu_s": 2.0}
+    text = compared(
+        {"near": row}, {"3": row | {"failed": 2, "hash": "b", "cpu_s": 3.0}}
+    )
+    assert text.splitlines()[-1] == "| near | 5 | 1 | 2 | yes | 1.50 |"
+
+
+def test_the_command_is_known():
+    options = command.parser().parse_args(["constant", "kEvery", "2", "8"])
+    assert options.values == ["2", "8"]

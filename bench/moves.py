@@ -2,7 +2,9 @@
 """Whether `near` of seven joints is nearest: beside all arcs of the self-motion.
 
 Arms are drawn at random; their constants of `near` are measured by this. Moves start
-at any configuration, or beside an answer.
+at any configuration, or beside an answer. With --odd, poses have joints at limits and
+right angles, where arms are singular; then the configuration that the pose was made of,
+and solve_all, are beside them as well.
 """
 
 from __future__ import annotations
@@ -15,11 +17,12 @@ import numpy as np
 import iksel
 from bench import random_arms
 from bench.arguments import add_count, add_names, add_seed
-from bench.laws import arms
+from bench.laws import arms, postures
 
 if TYPE_CHECKING:
     import argparse
 
+    from bench.arms import Arm
     from bench.chain import Array
 
 BUILDS = tuple(
@@ -33,20 +36,28 @@ APART = 77777
 """Between the seeds of poses and of where moves start."""
 
 
-def poses_and_starts(
-    robot: iksel.Robot, count: int, seed: int, beside: float | None = None
+def known_and_starts(
+    arm: Arm,
+    count: int,
+    seed: int,
+    beside: float | None = None,
+    *,
+    odd: bool = False,
 ) -> tuple[Array, Array]:
-    """Reachable poses, and where to move to them from.
+    """Configurations, and where to move to their poses from.
 
     That is any configuration, or `beside` away from an answer in each joint [rad], by
     a normal distribution.
     """
+    robot = arm.robot
     known = robot.random_configurations(count, seed=seed)
+    if odd:
+        known = postures(arm, count, np.random.default_rng(seed))
     start = robot.random_configurations(count, seed=seed + APART)
     if beside is not None:
         away = np.random.default_rng(seed).standard_normal(known.shape)
         start = np.clip(known + beside * away, robot.lower, robot.upper)
-    return robot.fk(known), start
+    return known, start
 
 
 def along_arcs(
@@ -57,9 +68,14 @@ def along_arcs(
     arcs = solver.self_motion(pose, spacing)
     if not len(arcs):
         return np.inf
+    return shortest(robot, np.vstack([arc.q for arc in arcs]), start)
+
+
+def shortest(robot: iksel.Robot, q: Array, start: Array) -> float:
+    """The shortest move to images of configurations, (N, dof), inside the limits."""
     turns = robot.upper - robot.lower >= 2 * np.pi
     whole = 2 * np.pi * turns * np.arange(-2, 3)[:, None, None]
-    images = np.vstack([arc.q for arc in arcs]) + whole
+    images = q + whole
     # Of joints without an end, at whichever turn the start is.
     endless = ~np.isfinite(robot.upper)
     near = np.round((start - images) / (2 * np.pi))
@@ -85,7 +101,22 @@ def add(commands: Any) -> None:
         metavar="RAD",
         help="start so far from an answer, else from any configuration",
     )
+    command.add_argument(
+        "--odd", action="store_true", help="poses with joints at limits, right angles"
+    )
     add_seed(command, 1000)
+
+
+def least_known(
+    solver: iksel.Solver, pose: Array, known: Array, start: Array, *, odd: bool
+) -> float:
+    """The shortest move that anything else finds [rad]."""
+    least = along_arcs(solver, pose, start)
+    if not odd:
+        return least
+    every = solver.solve_all(pose, near=start)
+    others = [one.move for one in every]
+    return min(least, shortest(solver.robot, known[None], start), *others)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -97,14 +128,22 @@ def run(args: argparse.Namespace) -> int:
             if arm.robot.structure.kind != iksel.StructureKind.swept:
                 continue
             solver = iksel.Solver(arm.robot)
-            drawn = poses_and_starts(arm.robot, args.poses, args.seed + i, args.beside)
-            for pose, start in zip(*drawn, strict=True):
+            drawn = known_and_starts(
+                arm, args.poses, args.seed + i, args.beside, odd=args.odd
+            )
+            for known, start in zip(*drawn, strict=True):
+                pose = arm.robot.fk(known)
                 near = solver.solve(pose, near=start)
-                least = along_arcs(solver, pose, start)
+                least = least_known(solver, pose, known, start, odd=args.odd)
                 count += 1
                 longer += not (near.success and near.move <= least + LONGER)
         bad += longer
         line = {"build": build, "seed": args.seed, "arms": args.arms, "moves": count}
-        line |= {"beside": args.beside, "longer": longer, "simd": iksel.simd_level()}
+        line |= {
+            "beside": args.beside,
+            "odd": args.odd,
+            "longer": longer,
+            "simd": iksel.simd_level(),
+        }
         print(json.dumps(line), flush=True)
     return 1 if bad else 0

@@ -564,12 +564,41 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
 def test_near_is_no_longer_than_along_the_arcs(case: tuple[Any, ...]) -> None:
     """A case: build, numbers of arm and pose, how far beside an answer it starts."""
     build, number, pose, *beside = case
-    robot = random_arms.random_arm(build, number).robot
-    poses, starts = moves.poses_and_starts(robot, 200, number, *beside)
-    solver = iksel.Solver(robot)
-    shortest = moves.along_arcs(solver, poses[pose], starts[pose])
-    found = solver.solve(poses[pose], near=starts[pose])
+    arm = random_arms.random_arm(build, number)
+    known, starts = moves.known_and_starts(arm, 200, number, *beside)
+    solver = iksel.Solver(arm.robot)
+    target = arm.robot.fk(known[pose])
+    shortest = moves.along_arcs(solver, target, starts[pose])
+    found = solver.solve(target, near=starts[pose])
     assert found.move < shortest + moves.LONGER
+
+
+@pytest.mark.parametrize(
+    ("name", "number", "pose"),
+    [
+        *(("iiwa14", 3100, 176), ("iiwa14", 3100, 375), ("panda", 3100, 376)),
+        *(("srs", 3107, 49), ("srs", 3103, 36), ("elbow_offset", 3117, 22)),
+        *(("wrist_offset", 3123, 26), ("wrist_offset", 3116, 2)),
+        ("shoulder_offset", 3104, 24),
+        *(("shoulder_elbow_offset", 3120, 10), ("shoulder_elbow_offset", 3102, 36)),
+    ],
+)
+def test_near_is_nearest_where_arms_are_singular(
+    name: str, number: int, pose: int
+) -> None:
+    """With joints at right angles curves cross: one more leads to what is nearer."""
+    (arm,) = laws.arms(name, 1, None, number)
+    count = 60 if name in random_arms.BUILDS else 600
+    known, starts = moves.known_and_starts(arm, count, number, odd=True)
+    least = moves.least_known(
+        iksel.Solver(arm.robot),
+        arm.robot.fk(known[pose]),
+        known[pose],
+        starts[pose],
+        odd=True,
+    )
+    found = iksel.Solver(arm.robot).solve(arm.robot.fk(known[pose]), near=starts[pose])
+    assert found.move < least + moves.LONGER
 
 
 @pytest.mark.parametrize("build", OF_ARCS)
@@ -622,7 +651,8 @@ def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     """There two joints turn against each other while all others stand still.
 
     Without what is between samples, a quarter of the moves are longer; where joints
-    that turned round stay beyond their limits, one of 30.
+    that turned round stay beyond their limits, one of 30; without what is around, one
+    of 1,000.
     """
     robot = iksel.load_robot("iiwa14")
     solver = iksel.Solver(robot)
@@ -636,7 +666,7 @@ def test_near_goes_through_what_swings_where_the_wrist_is_straight() -> None:
     ]
     known = np.linalg.norm(near - straight, axis=1)
     longer = np.flatnonzero(found > known + laws.LONGER)
-    assert longer.size <= 0.015 * ARC_POSES, f"seed {SEED}: {longer}"
+    assert longer.size == 0, f"seed {SEED}: {longer}"
 
 
 def test_the_judge_finds_what_is_broken() -> None:

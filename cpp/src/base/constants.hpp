@@ -9,6 +9,12 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 2.0 * kPi;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// What rounding may leave of joint values and directions, and beyond [rad, and m or parts of the
+/// reach].
+inline constexpr double kRounding = 1e-9;
+/// How far apart answers of one solution may be, by the default tolerances [rad or m].
+inline constexpr double kSameAnswer = 1e-6;
+
 /// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
 inline constexpr int kMaxMovingJoints = 64;
 /// Joints that a pose fixes.

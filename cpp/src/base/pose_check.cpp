@@ -14,7 +14,7 @@ namespace iksel {
 namespace {
 
 /// Deviation that rounding leaves in products of rotations; such a pose is taken bit for bit.
-constexpr double kRounding = 1e-12;
+constexpr double kExact = 1e-12;
 
 bool is_affine(const Pose& pose) {
   const auto& T = pose.matrix();
@@ -49,7 +49,7 @@ double rigid_deviation(const Pose& pose) {
 
 Rigidity rigidity_of(const Pose& pose) {
   const double deviation = rigid_deviation(pose);
-  if (deviation <= kRounding) return Rigidity::exact;
+  if (deviation <= kExact) return Rigidity::exact;
   return deviation <= kRigidTolerance ? Rigidity::close : Rigidity::none;
 }
 

@@ -10,8 +10,6 @@
 namespace iksel {
 
 CoaxialJoints::CoaxialJoints(const ChainModel& model) : joints_(model.joints) {
-  // Of angles [rad], and of lengths in units of the reach: what rounding leaves.
-  constexpr double kRounding = 1e-9;
   if (!is_simple(model)) return;
   const auto& joints = model.kernel.joints;
   for (std::size_t j = 1; j < joints.size(); ++j) {
@@ -63,8 +61,7 @@ void CoaxialJoints::bring_nearest(const JointVector& near, const JointMove& move
 
 void CoaxialJoints::share(const Group& group, double sum, const JointVector& near,
                           const JointMove& move, JointVector& q) const {
-  constexpr double kLeast = 1e-6;  // as of MoveCost
-  const double least = kLeast * move.weights().maxCoeff();
+  const double least = MoveCost::kLeastWeight * move.weights().maxCoeff();
   // Those that reach a limit stay there, and the others share the rest.
   std::array<bool, kMaxDof> stays{};
   double rest = sum;

@@ -57,7 +57,6 @@ bool Goal::is_out_of_reach() const {
                                          : task_.distance_from(target_, model_.reach_centre);
   // What rounding leaves of a stretched arm's length, which is more than the tolerance of a huge
   // one.
-  constexpr double kRounding = 1e-13;
   return distance > (1 + kRounding) * model_.reach_of_tcp() + task_.position_tolerance();
 }
 

@@ -37,8 +37,7 @@ std::optional<NearestTo> find_nearest_to(int dof, const SolveRequest& request) {
 
 MoveCost::MoveCost(const JointVector& weights, const JointVector& from, double power)
     : from_(from), power_(power) {
-  constexpr double kLeast = 1e-6;
-  weights_ = weights.cwiseMax(kLeast * weights.maxCoeff());
+  weights_ = weights.cwiseMax(kLeastWeight * weights.maxCoeff());
 }
 
 double MoveCost::operator()(const JointVector& q, JointVector* gradient,

@@ -64,6 +64,9 @@ using JointCost =
 /// joint without weight still has a little, so that it does not drift.
 class MoveCost {
  public:
+  /// Of the largest weight.
+  static constexpr double kLeastWeight = 1e-6;
+
   MoveCost(const JointVector& weights, const JointVector& from, double power = 2);
 
   /// The gradient, and the diagonal of a positive approximation of the second derivative, if they

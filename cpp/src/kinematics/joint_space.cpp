@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kinematics/joint_space.hpp"
 
+#include "base/constants.hpp"
 #include "base/pace.hpp"
 
 namespace iksel {
 
 namespace {
-
-/// So far an answer at a limit may be off, by the default tolerance, and so its image at the other
-/// [rad].
-constexpr double kOffLimit = 1e-6;
 
 /// Calls visit(q, beyond) with q at each combination of images of the joints that turn in sums, and
 /// how far sums, by what a joint would have to move, and these joints lie outside there.
@@ -221,17 +218,17 @@ bool JointSpace::wrap_nearest(const JointVector& near, double slack, const Lengt
 
 double JointSpace::lowest_image(int joint, double value) const {
   const bool ends = std::isfinite(upper[joint]);
-  const double low = ends ? lower[joint] - kOffLimit : -kPi;
+  const double low = ends ? lower[joint] - kSameAnswer : -kPi;
   double image = value - kTwoPi * std::floor((value - low) / kTwoPi);
   if (image < low) image += kTwoPi;
-  return image > upper[joint] + kOffLimit ? value : image;
+  return image > upper[joint] + kSameAnswer ? value : image;
 }
 
 bool JointSpace::next_combination(JointVector& q) const {
   for (int j = 0; j < dof(); ++j) {
     // A joint without limits has no end of images; one stands for all.
     if (!is_periodic(j) || !std::isfinite(upper[j])) continue;
-    if (q[j] + kTwoPi <= upper[j] + kOffLimit) {
+    if (q[j] + kTwoPi <= upper[j] + kSameAnswer) {
       q[j] += kTwoPi;
       return true;
     }

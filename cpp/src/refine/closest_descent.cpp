@@ -9,9 +9,6 @@ namespace {
 
 /// Longest step of a joint [rad or m].
 constexpr double kLongestDescent = 0.5;
-/// Ends that differ by less are the same: in their remainders, relative to them, or in all joints
-/// [rad or m].
-constexpr double kSameEnd = 1e-9;
 
 /// Leaves out what would leave limits that q stands at.
 void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
@@ -152,8 +149,8 @@ double descend_to_closest(const Remainder& remainder, int most, JointVector& q, 
     const bool is_lower = step_down(remainder, {value, gradient, diagonal, H}, damping, q);
     const double before = value;
     if (is_lower) look();
-    const bool is_settled = !is_lower || before - value <= kSameEnd * value ||
-                            (q - from).cwiseAbs().maxCoeff() < kSameEnd;
+    const bool is_settled = !is_lower || before - value <= kRounding * value ||
+                            (q - from).cwiseAbs().maxCoeff() < kRounding;
     if (is_settled) {
       if (!leave_saddle(remainder, {value, gradient, diagonal, H}, q)) return value;
       look();
@@ -173,7 +170,7 @@ double descend_from_seed(const Remainder& remainder, int most, JointVector& q, i
   JointVector principal = q;
   joints.wrap(principal.data());
   if (principal == q) return value;
-  if (remainder.value(principal) <= value * (1 + kSameEnd) + kSameEnd * kSameEnd) q = principal;
+  if (remainder.value(principal) <= value * (1 + kRounding) + kRounding * kRounding) q = principal;
   return value;
 }
 

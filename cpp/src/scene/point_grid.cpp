@@ -119,7 +119,7 @@ bool PointGrid::may_touch(const Eigen::Vector3d& c, double radius) const {
   const Cell cell = cell_of(c);
   // Cells are where rounding puts their points.
   const double away2 = away2_[index(cell[0], cell[1], cell[2])] * edge_ * edge_;
-  return away2 * (1 - kSlack) <= radius * radius;
+  return away2 * (1 - kRounding) <= radius * radius;
 }
 
 bool PointGrid::touches(const Eigen::Vector3d& c, double radius, double& clearance) const {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "iksel/scene.hpp"
 
 namespace iksel {
@@ -26,8 +27,6 @@ class PointGrid {
 
  private:
   using Cell = std::array<int, 3>;
-  /// Cells are where rounding puts their points [edges].
-  static constexpr double kSlack = 1e-9;
   /// The cell that holds c, or is nearest to it.
   [[nodiscard]] Cell cell_of(const Eigen::Vector3d& c) const;
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
@@ -42,9 +41,10 @@ class PointGrid {
   /// The same along one axis: of rows of `count` cells, `inner` apart.
   void measure_along(std::size_t inner, std::size_t count);
   /// At least how far c is from the points of cell number `cell` along an axis, squared [m^2].
+  /// Cells are where rounding puts their points.
   [[nodiscard]] double gap2_to(const Eigen::Vector3d& c, int axis, int cell) const {
     const double low = lower_[axis] + edge_ * cell - c[axis];
-    const double gap = std::max({low, -low - edge_, 0.0}) - kSlack * edge_;
+    const double gap = std::max({low, -low - edge_, 0.0}) - kRounding * edge_;
     return gap > 0 ? gap * gap : 0;
   }
 

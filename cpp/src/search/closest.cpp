@@ -20,7 +20,7 @@ constexpr float kHopeful = 1.5F;
 /// Where less is left, the arm almost reaches the target: more are followed, of single precision's
 /// rounding as many as it leaves open, and what the sweep of a joint found nearest [rad^2].
 constexpr float kAlmost = 3e-4F;
-constexpr float kRounding = 2e-6F;
+constexpr float kSingle = 2e-6F;
 constexpr int kAlmostDescents = 8;
 constexpr std::size_t kSweptDescents = 2;
 /// Seeds of the screen nearer than this in every joint end at the same place [rad or m].
@@ -98,10 +98,10 @@ void descend_from_screen(const Goal& goal, const Vector6& weights, Workspace::In
   JointVector tried[kAlmostDescents];
   int count = 0;
   for (int i = 0; i < ClosestScreen::size() && count < most; ++i) {
-    if (screen.remainder(i) > kHopeful * screen.remainder(0) + kRounding) break;
+    if (screen.remainder(i) > kHopeful * screen.remainder(0) + kSingle) break;
     const float expected =
         screen.remainder(i) - static_cast<float>(kHopefulSteps) * screen.gained(i);
-    if (minima.only_best_counts() && expected > screen.remainder(0) + kRounding) continue;
+    if (minima.only_best_counts() && expected > screen.remainder(0) + kSingle) continue;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
       return goal.joints().are_near(seed, other, kSameSeed);

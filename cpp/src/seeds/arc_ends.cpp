@@ -46,12 +46,10 @@ bool ArcEnds::find(std::size_t i, const Pose& T_base_tcp) {
 }
 
 bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
-  // What rounding leaves of a limit [rad].
-  constexpr double kRounding = 1e-6;
   const Crossing& crossing = *crossing_;
   const Pose from_first = crossing.base_inverse * T_base_tcp;
-  const double lower = joints_.lower[0] - kRounding;
-  const double upper = joints_.upper[0] + kRounding;
+  const double lower = joints_.lower[0] - kSameAnswer;
+  const double upper = joints_.upper[0] + kSameAnswer;
   double value = crossing.elbow->first_joint_to_plane(from_first * crossing.tip_inverse);
   if (side == 1) value += kPi;
   if (joints_.type(0) != JointType::continuous) {

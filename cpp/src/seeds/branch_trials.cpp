@@ -23,13 +23,12 @@ using Solved = std::bitset<kMostExamples>;
 
 /// The branch that has the joint values q at their value of the held joint; -1 if none does.
 int branch_at(SweptBranches& branches, const JointVector& q) {
-  constexpr double kSame = 1e-6;
   branches.solve_all(q[branches.joint()]);
   JointVector found(q.size());
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
     if (branches.off(lane) > 0) continue;
     branches.copy_joints(lane, found.data());
-    if ((found - q).cwiseAbs().maxCoeff() < kSame) return lane;
+    if ((found - q).cwiseAbs().maxCoeff() < kSameAnswer) return lane;
   }
   return -1;
 }

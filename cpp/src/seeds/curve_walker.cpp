@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
@@ -97,8 +98,7 @@ void CurveWalker::follow(FunctionRef<bool(int lane, Place& from, bool& is_revers
                          FunctionRef<bool(int lane, const Step& step)> advance,
                          FunctionRef<void(int lane)> stop) {
   constexpr double kFirstStep = 0.05;
-  /// A walk that comes to so short steps is at a singularity [rad and m].
-  constexpr double kShortest = 1e-6;
+  // A walk that comes to steps so short is at a singularity.
   unsigned busy = 0;
   const auto bit = [](int lane) { return 1U << static_cast<unsigned>(lane); };
   const auto load = [&](int lane) {
@@ -125,7 +125,7 @@ void CurveWalker::follow(FunctionRef<bool(int lane, Place& from, bool& is_revers
         at = to;
         if (advance(lane, Step{from, to, way_between(from.q, to.q)})) continue;
       } else {
-        if (pack_.step[lane] >= kShortest) continue;
+        if (pack_.step[lane] >= kSameAnswer) continue;
         stop(lane);
       }
       if (!load(lane)) busy &= ~bit(lane);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "seeds/beyond_limits.hpp"
 
 namespace iksel {
@@ -75,8 +76,7 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
   // Where a square is below 0, its two roots are taken to be the same.
   const auto is_same = [&](const Joints& other) {
-    constexpr double kSame = 1e-12;
-    return model_.joints.are_near(q, other, kSame);
+    return model_.joints.are_near(q, other, kRounding);
   };
   if (pack_.least[lane] < 0 && std::any_of(q_.begin(), q_.begin() + size_, is_same)) return;
   ++size_;

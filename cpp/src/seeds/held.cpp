@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/constants.hpp"
 #include "simd/lane_chain.hpp"
 
 namespace iksel {
@@ -68,9 +69,8 @@ bool Held::find(const Pose& T_base_tcp, const NearestTo& to) {
   if (curve_.size() == 0) return false;
   behind = Eigen::Map<const Eigen::VectorXd>(curve_.q(0), kCurveJoints);
   // Where it is preferred itself, the swept joint may have had to move.
-  constexpr double kStays = 1e-9;
   return !to.prefers(swept_) ||
-         std::abs(whole_.joints.difference(swept_, to.from[swept_], q_[swept_])) <= kStays;
+         std::abs(whole_.joints.difference(swept_, to.from[swept_], q_[swept_])) <= kRounding;
 }
 
 Pose Held::target_behind(const Pose& T_base_tcp) const {

@@ -25,10 +25,7 @@ struct BranchPoint {
   /// Whether not all joints are known, as some are far from an answer, or that far to be moved.
   [[nodiscard]] bool is_far() const { return inside >= lanes::kFarAway; }
   /// Whether a limit keeps its joints from the images that are nearest.
-  [[nodiscard]] bool is_blocked() const {
-    constexpr double kRounding = 1e-6;
-    return off > 0 || inside > loose + kRounding;
-  }
+  [[nodiscard]] bool is_blocked() const { return off > 0 || inside > loose + kSameAnswer; }
 };
 
 /// Of the moves that a form measures. Its constants are measured on random arms by

@@ -119,6 +119,8 @@ bool NearestOnCurve::may_hide_shorter(int place, int branch) const {
 }
 
 bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
+  /// Between two points that are all but the same: where the branch ends, joints turn less [rad].
+  constexpr double kTurnsFar = 0.01;
   branches_.solve_one(span.branch, [&](int lane) { return span.value(lane); });
   std::array<BranchPoint, lanes::kWidth> nodes;
   for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = branches_.point(static_cast<int>(i));
@@ -151,11 +153,15 @@ bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
                                          best());
     if (!may_hide) continue;
     if (ways[i].is_swing()) {
+      is_in_doubt_ = true;
       const BranchPoint nearest = bounds().nearest_on_swing(a, branches_.turns(a, b));
       if (nearest.inside < best()) add(nearest);
       continue;
     }
-    if (depth == 0 || spans_left_ == 0) continue;
+    if (depth == 0 || spans_left_ == 0) {
+      is_degenerate_ |= spans_left_ == 0 || ways[i].largest > kTurnsFar;
+      continue;
+    }
     --spans_left_;
     const int lane = static_cast<int>(i);
     any |= look_into({span.branch, span.value(lane), span.value(lane + 1)}, depth - 1);

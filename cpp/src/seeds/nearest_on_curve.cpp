@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "base/constants.hpp"
 
 namespace iksel {
 
@@ -30,6 +31,7 @@ bool NearestOnCurve::find_at_samples(const Pose& Y, const JointVector& near, con
   places_ = branches_.places(kSamples);
   known_move_ = known;
   found_.clear();
+  is_in_doubt_ = is_degenerate_ = false;
   spans_left_ = kMostSpans;
   if (prefers_staying(move)) stay();
   stays_ = found_.size() > 0;
@@ -66,14 +68,13 @@ bool NearestOnCurve::prefers_staying(const JointMove& move) const {
 }
 
 void NearestOnCurve::stay() {
-  // What is an answer but for rounding is one when it is refined [mixed units].
-  constexpr double kRounding = 1e-6;
+  // What is so little off is an answer when it is refined [mixed units].
   double value = near_;
   if (places_.turns) value -= kTwoPi * std::floor((value - places_.lower) / kTwoPi);
   if (branches_.clamp(value) != value) return;
   branches_.solve_all(value);
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
-    if (branches_.off(lane) <= kRounding) add(branches_.point(lane));
+    if (branches_.off(lane) <= kSameAnswer) add(branches_.point(lane));
   }
 }
 
@@ -120,6 +121,7 @@ double NearestOnCurve::solve_pack(int pack, double best) {
     within_[branch] |= row.within << first;
     for (int i = 0; i < lanes::kWidth; ++i) {
       const std::uint64_t bit = std::uint64_t{1} << (first + i);
+      is_degenerate_ |= std::abs(row.least[i]) < kRounding;
       if (row.least[i] < 0) {
         none_[branch] |= bit;
       } else if (row.moves.inside[i] >= lanes::kFarAway) {
@@ -127,6 +129,7 @@ double NearestOnCurve::solve_pack(int pack, double best) {
       } else {
         exist_[branch] |= bit;
         best = std::min(best, cost(row.moves.inside[i], row.moves.off[i]));
+        is_degenerate_ |= row.moves.off[i] > 0 && row.moves.off[i] < kSameAnswer;
       }
     }
   }
@@ -173,6 +176,7 @@ void NearestOnCurve::follow(const LeastPlace& least) {
 
 void NearestOnCurve::add(const BranchPoint& point) {
   if (cost(point) >= kRefused + kCorner) return;
+  is_in_doubt_ |= point.off > 0;
   SweptJoints found{point.inside, {}};
   branches_.copy_joints(point, found.q.data());
   found_.add(found);

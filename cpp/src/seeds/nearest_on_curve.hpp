@@ -41,6 +41,13 @@ class NearestOnCurve {
   [[nodiscard]] const double* q(std::size_t i) const { return found_[i].q.data(); }
   /// The move to it.
   [[nodiscard]] double move(std::size_t i) const { return found_[i].value; }
+  /// Whether there may be more than what was found, as curves cross where the arm is singular
+  /// (python -m bench moves --odd): joints swing there, or what was found is an answer but for
+  /// rounding; or the curve is degenerate.
+  [[nodiscard]] bool is_in_doubt() const { return is_in_doubt_ || is_degenerate_; }
+  /// Whether at a sample branches are the same, or answers, but for rounding, or between two that
+  /// are all but the same joints turn far.
+  [[nodiscard]] bool is_degenerate() const { return is_degenerate_; }
   /// Whether these are local minima but for rounding: those of the chain itself.
   [[nodiscard]] bool is_settled() const { return is_nominal_; }
 
@@ -181,6 +188,8 @@ class NearestOnCurve {
   double known_move_ = 0;
   bool takes_largest_ = false;
   bool stays_ = false;  ///< all that matters is found at one value of the swept joint
+  bool is_in_doubt_ = false;
+  bool is_degenerate_ = false;
   int spans_left_ = 0;
   std::vector<SamplePack> packs_;
   Least<SweptJoints, kMost> found_;

@@ -196,7 +196,6 @@ bool Sweep::take_answer(const SweptBranches::Row& off, double value) {
 bool Sweep::take(int lane) {
   // What is rated as an answer is one but for rounding; or it is outside of limits where any angle
   // would do.
-  constexpr double kRounding = 1e-9;
   if (branches_.off(lane) > kRounding) return false;
   branches_.copy_joints(lane, q_.data());
   const JointVector inside =

@@ -3,6 +3,7 @@
 // inside the limits, for any target within an error.
 #pragma once
 
+#include "base/constants.hpp"
 #include "simd/branch_kernel.hpp"
 #include "simd/enclosed.hpp"
 
@@ -35,7 +36,6 @@ template <typename T>
 IKSEL_INLINE T room_within(const ClosedForm& form, int j, const Angle<Enclosed<T>>& angle) {
   /// The arc sine of s is no more than s (1 + 0.3 s^2), up to this s.
   constexpr double kMost = 0.7;
-  constexpr double kRounding = 1e-9;
   const T size =
       sqrt(max(angle.c.value() * angle.c.value() + angle.s.value() * angle.s.value(), T(1e-12)));
   const T inverse = T(1.0) / size;

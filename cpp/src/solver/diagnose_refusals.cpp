@@ -24,15 +24,13 @@ std::string obstacle_text(const Scene& scene, const std::string& name) {
 
 /// "link 'a' touches box 'b' by 12 mm, link 'c' touches link 'd' by 3 mm"
 std::string contacts_text(const Scene& scene, const std::vector<Contact>& contacts) {
-  /// Less deep than this it is rounding [m].
-  constexpr double kShallow = 1e-9;
   std::string list;
   for (const Contact& contact : contacts) {
     if (!list.empty()) list += ", ";
     list += body_text(scene, contact.link) + " touches ";
     list +=
         contact.is_obstacle ? obstacle_text(scene, contact.other) : body_text(scene, contact.other);
-    if (contact.depth > kShallow) {
+    if (contact.depth > kRounding) {
       list += " by " + number_text(1e3 * contact.depth, 3) + " mm";
     }
   }

@@ -67,13 +67,13 @@ class PathSearch {
   /// cheapest of them leads anywhere.
   bool add_continuations(const Goal& goal, const Layer& before, Layer& layer) const {
     // Images of a configuration lead to images: only one of them is iterated.
-    constexpr double kCopy = 1e-11;
     std::vector<JointVector> origins;
     std::vector<JointVector> moves;
     bool leads_on = false;
     for (const auto& [from, cost, parent] : before) {
       std::size_t same = 0;
-      while (same < origins.size() && !model_.joints.are_near(origins[same], from, kCopy)) ++same;
+      while (same < origins.size() && !model_.joints.are_near(origins[same], from, kRounding))
+        ++same;
       if (same == origins.size()) {
         JointVector q = from;
         if (!converge(goal, kStepsToNext, q)) continue;

@@ -47,7 +47,6 @@ double Elbow::first_joint_to_plane(const Pose& Y) const {
 }
 
 double Elbow::angle(const double* q) const {
-  constexpr double kTooShort = 1e-9;
   const auto turn = [&](std::size_t j) {
     return Eigen::AngleAxisd(q[j] + offset_[j], axes_.h[j]).toRotationMatrix();
   };
@@ -57,7 +56,7 @@ double Elbow::angle(const double* q) const {
   const Vector3d line = to_wrist.normalized();
   const Vector3d from = axes_.h[0] - line * line.dot(axes_.h[0]);
   const Vector3d side = to_elbow - line * line.dot(to_elbow);
-  if (!(from.norm() > kTooShort && side.norm() > kTooShort * to_elbow.norm())) {
+  if (!(from.norm() > kRounding && side.norm() > kRounding * to_elbow.norm())) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   return std::atan2(line.dot(from.cross(side)), from.dot(side));

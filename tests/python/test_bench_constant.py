@@ -57,9 +57,8 @@ def test_answers_are_the_same_again(capsys):
 
 def test_the_table_says_what_changed():
     row = {"asked": 5, "failed": 1, "hash": "a", "cpu_s": 2.0}
-    text = compared(
-        {"near": row}, {"3": row | {"failed": 2, "hash": "b", "cpu_s": 3.0}}
-    )
+    other = row | {"failed": 2, "hash": "b", "cpu_s": 3.0}
+    text = compared({"near": row}, {"3": {"near": other}})
     assert text.splitlines()[-1] == "| near | 5 | 1 | 2 | yes | 1.50 |"
 
 

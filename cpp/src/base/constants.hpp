@@ -15,6 +15,13 @@ inline constexpr double kRounding = 1e-9;
 /// How far apart answers of one solution may be, by the default tolerances [rad or m].
 inline constexpr double kSameAnswer = 1e-6;
 
+/// Longest step of a joint while it goes downhill: what it is led by is of the first or second
+/// order [rad or m].
+inline constexpr double kLongestStep = 0.5;
+/// A seed this near to a solution in every joint would end there itself [rad or m]; or at the other
+/// of a pair that is near.
+inline constexpr double kBasinRadius = 0.2;
+
 /// Most joints that move on a chain (mimic joints come on top of the degrees of freedom).
 inline constexpr int kMaxMovingJoints = 64;
 /// Joints that a pose fixes.

@@ -7,9 +7,6 @@
 namespace iksel {
 namespace {
 
-/// Longest step of a joint [rad or m].
-constexpr double kLongestDescent = 0.5;
-
 /// Leaves out what would leave limits that q stands at.
 void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
                     SquareMatrix& H) {
@@ -78,7 +75,7 @@ bool step_down(const Remainder& remainder, const Slope& at, double& damping, Joi
     JointVector step;
     if (!step_inside(joints, q, at.gradient, damped, step)) continue;
     const double longest = step.cwiseAbs().maxCoeff();
-    if (longest > kLongestDescent) step *= kLongestDescent / longest;
+    if (longest > kLongestStep) step *= kLongestStep / longest;
     const JointVector next = joints.clamp(q + step);
     if (!(remainder.value(next) < at.value)) continue;
     q = next;

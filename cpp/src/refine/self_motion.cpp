@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/constants.hpp"
 #include "iksel/options.hpp"
 #include "refine/least_cost_step.hpp"
 #include "refine/limited_step.hpp"
@@ -37,8 +38,6 @@ bool converge_rows(const Goal& goal, int most, double aim, bool wraps, JointVect
 
 template <typename Linear>
 int descend_rows(const Goal& goal, const JointCost& cost, int most, JointVector& q) {
-  /// Longest step of a joint, within which the pose stays near enough to be corrected [rad or m].
-  constexpr double kLongest = 0.5;
   constexpr double kSettled = 1e-7;
   const JointSpace& joints = goal.joints();
   JointVector gradient(joints.dof());
@@ -51,7 +50,7 @@ int descend_rows(const Goal& goal, const JointCost& cost, int most, JointVector&
     const JointVector step = least_cost_step(joints, q, at, gradient, curvature);
     const double longest = step.cwiseAbs().maxCoeff();
     if (!(longest > kSettled)) return steps;
-    double scale = std::min(1.0, kLongest / longest);
+    double scale = std::min(1.0, kLongestStep / longest);
     bool better = false;
     for (int halving = 0; halving < 8 && !better; ++halving, scale /= 2) {
       JointVector next = joints.clamp(q + scale * step);

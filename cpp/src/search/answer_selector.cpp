@@ -15,11 +15,6 @@ namespace {
 /// brute force, with 128 2, with 256 none (python -m bench random right_angles_7).
 constexpr int kRedundantSeeds = 64;
 constexpr int kSeedsOfSurfaces = 256;
-/// The best solutions of a redundant arm that are brought to a least cost.
-constexpr std::size_t kDescents = 4;
-/// The same where an arm that is not redundant is singular: the nearest of several families may be
-/// that of the sixth (python -m bench laws right_angles_6 --poses 100).
-constexpr std::size_t kSingularDescents = 16;
 
 }  // namespace
 
@@ -64,7 +59,7 @@ bool AnswerSelector::select(const Collector& search, JointVector& q) {
       nearest_to_ && !goal_.is_redundant() && search.result().proof == Proof::none;
   const bool is_redundant = goal_.is_redundant() && !search.is_settled();
   const std::size_t descents = std::min(count, is_redundant  ? kDescents
-                                               : is_in_doubt ? kSingularDescents
+                                               : is_in_doubt ? kFamilyDescents
                                                              : 1);
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(descents),
                     ranked.begin() + static_cast<std::ptrdiff_t>(count));

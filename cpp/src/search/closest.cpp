@@ -23,8 +23,6 @@ constexpr float kAlmost = 3e-4F;
 constexpr float kSingle = 2e-6F;
 constexpr int kAlmostDescents = 8;
 constexpr std::size_t kSweptDescents = 2;
-/// Seeds of the screen nearer than this in every joint end at the same place [rad or m].
-constexpr double kSameSeed = 0.1;
 /// Remainders that differ by less, relative to them, are the same.
 constexpr double kSameRemainder = 1e-6;
 
@@ -104,7 +102,7 @@ void descend_from_screen(const Goal& goal, const Vector6& weights, Workspace::In
     if (minima.only_best_counts() && expected > screen.remainder(0) + kSingle) continue;
     const JointVector seed = screen.q(i);
     const bool is_known = std::any_of(tried, tried + count, [&](const JointVector& other) {
-      return goal.joints().are_near(seed, other, kSameSeed);
+      return goal.joints().are_near(seed, other, kBasinRadius);
     });
     if (is_known) continue;
     tried[count++] = seed;

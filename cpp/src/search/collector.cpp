@@ -11,10 +11,6 @@
 namespace iksel {
 namespace {
 
-/// A seed this near to a solution in every joint would end there itself [rad or m]; or at the other
-/// of a pair that is near, which is looked for from the solution.
-constexpr double kBasinRadius = 0.2;
-
 /// Seeds in a row without a new solution after which a search has most likely found all. With 96,
 /// an arm whose limits cut into its branches lost one in a pose of 170, with 128 in one of 300,
 /// with 160 in one of 700 (bench/README.md).
@@ -22,11 +18,6 @@ constexpr int kStagnation = 160;
 /// The same after all branches in closed form. What 400 seeds find besides are no solutions of
 /// their own, but points of a curve that is one to within the tolerances (bench/README.md).
 constexpr int kStagnationEnumerated = 8;
-/// Solutions of several tips whose move is no more than so many times the least are moved along
-/// their self-motion to where it is least. With 1.1 and without a bound as many of 600 moves of two
-/// Pandas on a joint were longer than by brute force, with 1 more; it takes a third of the time.
-constexpr double kWorthDescending = 1.1;
-
 /// An image that lies no farther beyond a limit may have an answer at the limit beside it, where
 /// the arm is almost singular [rad].
 constexpr double kBesideLimit = 5e-3;

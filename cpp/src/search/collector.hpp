@@ -20,6 +20,18 @@ inline bool ranks_answers(const SolveRequest& request) {
   return request.near || request.objective.is_set();
 }
 
+/// Solutions of several tips whose move is no more than so many times the least are moved along
+/// their self-motion to where it is least, and may lead to nearer ones beside them. With 1.1 and
+/// without a bound as many of 600 moves of two Pandas on a joint were longer than by brute force,
+/// with 1 more; it takes a third of the time (python -m bench hands pairs).
+inline constexpr double kWorthDescending = 1.1;
+/// The best solutions of a redundant arm that are brought to a least cost.
+inline constexpr std::size_t kDescents = 4;
+/// The same where solutions come in families: the nearest may be on that of the sixth (python -m
+/// bench laws right_angles_6 --poses 100); with 4, 5 of 2,820 moves of arms whose self-motions are
+/// no curves are longer than brute force, with 16 none (python -m bench random right_angles_7).
+inline constexpr std::size_t kFamilyDescents = 16;
+
 /// What a Collector writes to. Memory is taken at construction, none later.
 struct CollectorMemory {
   explicit CollectorMemory(const RobotModel& model) : found(model) { partners.reserve(kPartners); }

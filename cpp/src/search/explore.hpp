@@ -16,8 +16,7 @@ using AllSearch = SearchParts<Collector>;
 /// Seeds after all branches, or all roots of a sweep, led nowhere: double ones, or just outside a
 /// limit, or beside a singularity; and of a sweep of a chain that is only nearly the arm's, or of
 /// which an answer was refused (python -m bench lost --targets 0 --hard 1000000).
-inline constexpr int kBesideBranches = 48;
-inline constexpr int kBesideRoots = 96;
+inline constexpr int kBesideSolutions = 96;
 
 /// Near, given seeds and all branches. `kind`: the proof that branches give.
 template <typename Parts>
@@ -45,10 +44,8 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
   }
   if (is_through) return Explored::done(is_certain ? kind : Proof::none);
   const bool has_all = enumerated.was_tried() && branches.has_all();
-  if (kind == Proof::sweep) {
-    parts.work.leave(kBesideRoots);
-  } else if (has_all && !answers.wants_more()) {
-    parts.work.leave(kBesideBranches);
+  if (kind == Proof::sweep || (has_all && !answers.wants_more())) {
+    parts.work.leave(kBesideSolutions);
   }
   answers.look_for_partners(true);
   if (has_all) answers.set_all_branches_tried();

@@ -92,8 +92,6 @@ bool explore_arcs(const AllSearch& parts, const Pose& Y) {
 /// without it, with it 24, most of them to where a joint wider than a turn is at a limit, and
 /// another joint at another (python -m bench moves --odd --poses 60 --seed 3100).
 void explore_beside_curve(const AllSearch& parts, const Pose& Y, bool is_degenerate) {
-  constexpr int kNearby = 64;
-  constexpr std::size_t kDescents = 4;
   Collector& answers = parts.answers;
   const double before = answers.least_move();
   const JointVector& near = answers.nearest_to().from;
@@ -155,16 +153,12 @@ Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
 }  // namespace
 
 void explore_families(const AllSearch& parts, const Pose& Y) {
-  /// Of what was found, so many are moved to where they are nearest: with 4, 5 of 2,820 moves of
-  /// arms whose self-motions are no curves are longer than brute force, with 16 none (python -m
-  /// bench random right_angles_7).
-  constexpr std::size_t kDescentsToNearest = 16;
   Collector& answers = parts.answers;
   if (parts.workspace.lanes->curve && explore_arcs(parts, Y)) {
     answers.settle(true);
     return;
   }
-  answers.descend_from_nearest(kDescentsToNearest);
+  answers.descend_from_nearest(kFamilyDescents);
   parts.work.lap(&StageTimes::iterate);
 }
 

@@ -66,7 +66,7 @@ Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, c
   }
   if (lanes.sweep) {
     if (const auto any = explore_any(parts, Y); any.is_done) return any.proof;
-    parts.work.leave(kBesideRoots);
+    parts.work.leave(kBesideSolutions);
   }
   lanes.refiner.begin(parts.goal.task(), kScreened, Width::wide);
   ScreenedSeeds screened(lanes.query, lanes.screen, Y, parts.model.joints, parts.options.seed,

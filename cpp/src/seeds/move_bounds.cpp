@@ -42,7 +42,6 @@ MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b
 
 bool MoveBounds::may_hide_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
                                   double usual, double best) const {
-  constexpr double kWide = 0.7;     // [rad]
   constexpr double kFinest = 1e-5;  // [rad]
   const bool is_wide = way.largest > std::max(kWide, usual);
   const bool changes_images = way.leaves_limits || a.is_blocked() || b.is_blocked();

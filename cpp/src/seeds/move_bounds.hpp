@@ -36,6 +36,10 @@ class MoveBounds {
 
   explicit MoveBounds(const lanes::MoveForm& form) : form_(form) {}
 
+  /// Joints turn far that turn by more [rad], and by more than so many times what the swept one
+  /// does.
+  static constexpr double kWide = 0.7;
+  static constexpr double kSteeper = 4;
   /// What is shorter by less is not looked for [rad].
   static constexpr double kTooLittle = 1e-3;
   /// What turns by no more takes no part in a swing, and what stands still turns by less [rad].

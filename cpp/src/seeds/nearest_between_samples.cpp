@@ -103,8 +103,6 @@ std::uint64_t NearestOnCurve::find_staying(int branch) const {
 }
 
 bool NearestOnCurve::may_hide_shorter(int place, int branch) const {
-  // How much more than the swept one other joints turn from one sample to the next.
-  constexpr double kSteeper = 4;
   const BranchPoint a = point(place - 1, branch);
   const BranchPoint b = point(place, branch);
   if (!a.exists() || !b.exists()) {
@@ -115,7 +113,8 @@ bool NearestOnCurve::may_hide_shorter(int place, int branch) const {
     return bounds().may_be_shorter({known(place - 2, 0), a, b, known(place + 1, 1)}, best());
   }
   if (a.is_far() || b.is_far()) return bounds().joints_may_be_shorter(a, b, best());
-  return bounds().may_hide_shorter(a, b, bounds().way(a, b), kSteeper * places_.step, best());
+  return bounds().may_hide_shorter(a, b, bounds().way(a, b), MoveBounds::kSteeper * places_.step,
+                                   best());
 }
 
 bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {

@@ -119,9 +119,13 @@ double NearestOnCurve::solve_pack(int pack, double best) {
   for (std::size_t branch = 0; branch < lanes::kWidth; ++branch) {
     const lanes::BranchRow& row = samples.branch[branch];
     within_[branch] |= row.within << first;
+    // Without branches, as it is for all samples.
+    for (int i = 0; i < lanes::kWidth; ++i) {
+      const double off = row.moves.off[i];
+      is_degenerate_ |= (std::abs(row.least[i]) < kRounding) | ((off > 0) & (off < kSameAnswer));
+    }
     for (int i = 0; i < lanes::kWidth; ++i) {
       const std::uint64_t bit = std::uint64_t{1} << (first + i);
-      is_degenerate_ |= std::abs(row.least[i]) < kRounding;
       if (row.least[i] < 0) {
         none_[branch] |= bit;
       } else if (row.moves.inside[i] >= lanes::kFarAway) {
@@ -129,7 +133,6 @@ double NearestOnCurve::solve_pack(int pack, double best) {
       } else {
         exist_[branch] |= bit;
         best = std::min(best, cost(row.moves.inside[i], row.moves.off[i]));
-        is_degenerate_ |= row.moves.off[i] > 0 && row.moves.off[i] < kSameAnswer;
       }
     }
   }

@@ -16,6 +16,9 @@ void load_random(const JointSpace& joints, Random& random, Refiner& refiner, int
   refiner.load_seed(lane, joints.sample(random).data());
 }
 
+/// So many rows around a configuration.
+inline constexpr int kNearby = 64;
+
 /// `count` rows around a configuration: what is nearest to it, of solutions with many joints to
 /// spare, is found from there rather than from all over the limits.
 inline std::vector<double> sample_around(const JointVector& from, std::uint64_t seed, int count) {

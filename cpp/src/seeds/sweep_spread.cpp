@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "seeds/farthest_first.hpp"
+#include "seeds/move_bounds.hpp"
 #include "seeds/sweep.hpp"
 
 namespace iksel {
@@ -143,9 +144,8 @@ class Sweep::Spread {
   }
   [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kCurveJoints>& from,
                              const std::array<double, kCurveJoints>& to) const {
-    constexpr double kWide = 0.7;  // [rad or m]
-    constexpr double kSteep = 4;   // as against the swept joint
-    const double wide = std::max(kWide, kSteep * sweep_.places_.step * (gap.to - gap.from));
+    const double wide = std::max(MoveBounds::kWide,
+                                 MoveBounds::kSteeper * sweep_.places_.step * (gap.to - gap.from));
     return !joints_.are_near(from, to, wide);
   }
 

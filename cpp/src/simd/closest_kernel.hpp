@@ -11,6 +11,7 @@
 //   s_ij = z_i . z_j trace M - z_i . M z_j.
 #pragma once
 
+#include "base/constants.hpp"
 #include "simd/lane_frames.hpp"
 #include "simd/lane_types.hpp"
 #include "simd/lane_vector.hpp"
@@ -191,12 +192,12 @@ IKSEL_INLINE void differentiate(const LaneChainOf<float>& chain, const ClosestTa
   }
 }
 
-/// The step of Newton's method from q, of n variables, at most `kLongest` in each. `J` as above.
+/// The step of Newton's method from q, of n variables, at most kLongestStep in each. `J` as above.
 template <bool kFollow, typename T>
 IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const ClosestTarget& target,
                                   const Remaining<T>& at, const T& damping, int n, const T* q,
                                   const T (*J)[6], T* step) {
-  constexpr float kLongest = 0.5F;
+  const T most(static_cast<float>(kLongestStep));
   T H[kMaxJoints][kMaxJoints];
   T slope[kMaxJoints];
   T scale[kMaxJoints];
@@ -217,10 +218,10 @@ IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const Closest
     H[j][j] = H[j][j] + (T(1.0F) - free[j]) + damping * scale[j] + T(1e-9F);
   }
   solve_downhill(n, scale, H, step);
-  T longest = T(kLongest);
+  T longest = most;
 #pragma GCC unroll 8
   for (int j = 0; j < n; ++j) longest = max(longest, abs(step[j]));
-  const T part = T(kLongest) / longest;
+  const T part = most / longest;
 #pragma GCC unroll 8
   for (int j = 0; j < n; ++j) step[j] = step[j] * part;
 }

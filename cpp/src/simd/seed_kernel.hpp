@@ -153,17 +153,21 @@ IKSEL_INLINE T take_first_step(const SeedChain& chain, const float* block, const
   return dq2 + T(1000.0F) * outside;
 }
 
+/// Vectors in a block.
+template <typename T>
+inline constexpr int kVectors = kBlock / Lanes<T>::kCount;
+
 /// Puts the seeds in order. The rank of a seed is how many others are better; of equals the first.
-template <typename T, int kVectors>
-IKSEL_INLINE void rank_seeds(const T (&score)[kVectors], SeedPack& out) {
+template <typename T>
+IKSEL_INLINE void rank_seeds(const T (&score)[kVectors<T>], SeedPack& out) {
   using L = Lanes<T>;
   float entries[kBlock];
   for (int entry = 0; entry < kBlock; ++entry) entries[entry] = static_cast<float>(entry);
-  T rank[kVectors];
-  for (int v = 0; v < kVectors; ++v) rank[v] = T(0.0F);
+  T rank[kVectors<T>];
+  for (int v = 0; v < kVectors<T>; ++v) rank[v] = T(0.0F);
   for (int other = 0; other < kBlock; ++other) {
     const T theirs(out.score[other]);
-    for (int v = 0; v < kVectors; ++v) {
+    for (int v = 0; v < kVectors<T>; ++v) {
       const auto better =
           (theirs < score[v]) | ((theirs == score[v]) &
                                  (T(static_cast<float>(other)) < L::load(entries + v * L::kCount)));
@@ -171,7 +175,7 @@ IKSEL_INLINE void rank_seeds(const T (&score)[kVectors], SeedPack& out) {
     }
   }
   float ranks[kBlock];
-  for (int v = 0; v < kVectors; ++v) L::store(rank[v], ranks + v * L::kCount);
+  for (int v = 0; v < kVectors<T>; ++v) L::store(rank[v], ranks + v * L::kCount);
   for (int entry = 0; entry < kBlock; ++entry) {
     out.order[static_cast<int>(ranks[entry])] = static_cast<unsigned char>(entry);
   }
@@ -181,9 +185,8 @@ template <typename T>
 void prepare_seeds(const SeedChain& chain, const SeedTarget& target, const float* block,
                    SeedPack& out) {
   using L = Lanes<T>;
-  constexpr int kVectors = kBlock / L::kCount;
-  T score[kVectors];
-  for (int v = 0; v < kVectors; ++v) {
+  T score[kVectors<T>];
+  for (int v = 0; v < kVectors<T>; ++v) {
     const int offset = v * L::kCount;
     const auto row = [&](int r) { return L::load(block + r * kBlock + offset); };
     LaneFrame<T> sample = {{row(3), row(4), row(5)},
@@ -210,18 +213,17 @@ template <typename T>
 void add_known(int n, const float* per_turn, const float* from, const float* q, int blocks,
                std::ptrdiff_t stride, float* nearest) {
   using L = Lanes<T>;
-  constexpr int kVectors = kBlock / L::kCount;
   for (int block = 0; block < blocks; ++block, q += stride, nearest += kBlock) {
-    T away[kVectors];
+    T away[kVectors<T>];
     for (T& each : away) each = T(0.0F);
     for (int j = 0; j < n; ++j) {
-      for (int v = 0; v < kVectors; ++v) {
+      for (int v = 0; v < kVectors<T>; ++v) {
         T d = L::load(q + j * kBlock + v * L::kCount) - T(from[j]);
         if (per_turn[j] > 0) d = d - nearest_integer(d * T(per_turn[j])) * T(6.2831853F);
         away[v] = max(away[v], abs(d));
       }
     }
-    for (int v = 0; v < kVectors; ++v) {
+    for (int v = 0; v < kVectors<T>; ++v) {
       float* at = nearest + v * L::kCount;
       L::store(min(away[v], L::load(at)), at);
     }

@@ -17,8 +17,6 @@ namespace {
 
 /// Seeds that one arm has behind each value of the shared joints, of which there are others.
 constexpr int kArmAttempts = 64;
-/// Seeds around what the nearest is wanted to, where it is not known by the arms' nearest.
-constexpr int kNearbySeeds = 128;
 /// Iterations of a seed while little work is done.
 constexpr int kQuickIterations = 16;
 
@@ -90,8 +88,8 @@ Proof TipsSearch::search_for(Answers& answers, Workspace& workspace) const {
   }
   if (is_enough() && !ArmSeeds::knows_nearest(arms, collector)) {
     const std::vector<double> q =
-        sample_around(collector->nearest_to().from, options_.seed, kNearbySeeds);
-    RowSeeds nearby(q.data(), kNearbySeeds, q.size() / kNearbySeeds, /*are_answers=*/false, work,
+        sample_around(collector->nearest_to().from, options_.seed, kNearby);
+    RowSeeds nearby(q.data(), kNearby, q.size() / kNearby, /*are_answers=*/false, work,
                     &Work::take_guess);
     search(refiner, nearby, answers, work);
   }

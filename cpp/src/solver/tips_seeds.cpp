@@ -15,8 +15,8 @@ constexpr int kSharedValues = 32;
 /// Where many answers are wanted; and values at which the nearest is looked for where it may be
 /// anywhere within the limits, if the arms' nearest are known. Of 1,500 moves of random pairs of
 /// arms on a joint, from anywhere, 13 were longer than by 1,500 values with 192, 10 with 256 and 7
-/// with 384, before kWorthwhile; with it 5 with 224 and 4 with 256 (moves as of python -m bench
-/// hands pairs).
+/// with 384, before kWorthDescending; with it 5 with 224 and 4 with 256 (moves as of python -m
+/// bench hands pairs).
 constexpr int kManyValues = 256;
 /// Seeds of one chain each, after the first values.
 constexpr int kChainSeeds = 24;
@@ -26,12 +26,6 @@ constexpr int kCombinations = 256;
 /// are: the others lie behind other values.
 constexpr std::size_t kNearestKept = 4;
 constexpr std::size_t kManyKept = 16;
-
-/// What is so many times as far as the nearest so far may lead to a nearer one beside it. With 1.02
-/// and 1.1 as many of those moves were longer.
-constexpr double kWorthwhile = 1.02;
-/// Beside a solution that is nearer in every joint another leads to the same [rad or m].
-constexpr double kJump = 0.2;
 
 /// How many solutions of each of so many arms give kCombinations.
 int solutions_of_each(int arms) {
@@ -144,7 +138,7 @@ bool ArmSeeds::next_stage() {
 void ArmSeeds::extend(std::size_t k, JointVector q) {
   if (is_too_far(k, q) || seeds_.size() >= kCombinations) return;
   if (k == order_.size()) {
-    if (!knows_nearest_ || !collector_->has_beside(q, kJump) ||
+    if (!knows_nearest_ || !collector_->has_beside(q, kBasinRadius) ||
         to_->move.length(q - to_->from) < last_best_) {
       seeds_.push_back(q);
     }
@@ -207,8 +201,8 @@ void ArmSeeds::add_mixed(Behind& a, Behind& b, unsigned tips_of_b) {
     const std::vector<JointVector>& here = solve(tip, is_of_b ? b.q : a.q, is_of_b ? b : a);
     if (here.empty()) return;
     const auto& there = (is_of_b ? a : b).arms[static_cast<std::size_t>(tip)];
-    jumps[is_of_b] |=
-        !there || there->empty() || (here.front() - there->front()).cwiseAbs().maxCoeff() > kJump;
+    jumps[is_of_b] |= !there || there->empty() ||
+                      (here.front() - there->front()).cwiseAbs().maxCoeff() > kBasinRadius;
     put(here.front(), model_.tip(tip).arm->joints, q);
     if (is_too_far(k + 1, q)) return;
   }
@@ -241,7 +235,7 @@ bool ArmSeeds::is_too_far(std::size_t arms, const JointVector& q) const {
   for (std::size_t k = 0; k < arms; ++k) {
     for (const int joint : model_.tip(order_[k]).arm->joints) moved[joint] = q[joint];
   }
-  return to_->move.length(moved - to_->from) >= kWorthwhile * last_best_;
+  return to_->move.length(moved - to_->from) >= kWorthDescending * last_best_;
 }
 
 bool ChainSeeds::next_stage() {

@@ -29,7 +29,12 @@ JointVector lean(const JointVector& q, const JointVector& to) {
 
 /// How much of a move no joint is too slow for.
 double part_in_time(const JointVector& move, const JointVector& longest) {
-  return std::min(1.0, (longest.array() / move.array().abs()).minCoeff());
+  double part = 1;
+  for (Eigen::Index j = 0; j < move.size(); ++j) {
+    // A joint that stands still has no need of time.
+    if (part * std::abs(move[j]) > longest[j]) part = longest[j] / std::abs(move[j]);
+  }
+  return part;
 }
 
 /// How far a pose is from another, by the largest of the weights of position and of rotation.
@@ -168,14 +173,10 @@ void Tracker::improve(const Goal& goal, const JointVector& longest, double dt, J
   steps += descend_self_motion(goal, JointCost(cost), /*most=*/1, better);
   const JointVector way = better - end;
   const JointVector room = longest - (end - q_).cwiseAbs();
-  double part = std::min(1.0, dt / kObjectiveTime);
-  for (Eigen::Index j = 0; j < way.size(); ++j) {
-    if (part * std::abs(way[j]) > room[j]) part = room[j] / std::abs(way[j]);
-  }
+  const double part = std::min(dt / kObjectiveTime, part_in_time(way, room));
   // The way is straight, the self-motion is not.
-  constexpr int kHalvings = 3;
-  for (int halving = 0; halving <= kHalvings && part > 0; ++halving, part /= 2) {
-    JointVector next = end + part * way;
+  for (const double share : {1.0, 0.5, 0.25, 0.125}) {
+    JointVector next = end + share * part * way;
     if (!converge(goal, kStepsToNext, next, steps) || part_in_time(next - q_, longest) < 1 ||
         !(cost.value(next) < cost.value(end))) {
       continue;

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kWanted = 6;
+constexpr std::size_t kWanted = kPoseJoints;
 /// The rotations that a point does not feel.
 constexpr std::size_t kAboutPoint = 3;
 

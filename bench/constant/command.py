@@ -10,6 +10,7 @@ constant with which nothing changes needs no value of its own.
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import subprocess
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import iksel
 from bench import random_arms
 from bench.arguments import add_count, add_seed
-from bench.constant.variant import ROOT, build, find
+from bench.constant.variant import ROOT, Constant, build, find
 from bench.markdown import table
 
 if TYPE_CHECKING:
@@ -39,7 +40,12 @@ def add(commands: Any) -> None:
     command.add_argument(
         "name", metavar="[FILE:]NAME", help="e.g. seeds/sweep.cpp:kEvery"
     )
-    command.add_argument("values", nargs="+", metavar="VALUE", help="as C++ has it")
+    command.add_argument(
+        "values",
+        nargs="*",
+        metavar="VALUE",
+        help="as C++ has it (default: three times and a third of what it is)",
+    )
     command.add_argument(
         "--builds",
         nargs="+",
@@ -58,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
     folder = ROOT / "build" / "constant"
     rows = {
         value: _asked(build(constant, value, folder), args)
-        for value in (constant.value, *args.values)
+        for value in (constant.value, *(args.values or beside(constant)))
     }
     first = rows.pop(constant.value)
     sys.stdout.write(
@@ -67,6 +73,21 @@ def run(args: argparse.Namespace) -> int:
         f"SIMD level {iksel.simd_level()}.\n\n{compared(first, rows)}\n"
     )
     return 0
+
+
+def beside(constant: Constant) -> list[str]:
+    """Three times and a third of a constant's value.
+
+    Raises SystemExit if that is no number.
+    """
+    try:
+        value = ast.literal_eval(constant.value.removesuffix("F"))
+        if isinstance(value, int):
+            return [str(3 * value), str(max(1, round(value / 3)))]
+        return [f"{3 * value:.6g}", f"{value / 3:.6g}"]
+    except (SyntaxError, TypeError, ValueError):
+        text = f"{constant.name} is {constant.value}: say which values"
+        raise SystemExit(f"bench constant: {text}") from None
 
 
 def compared(first: Kinds, others: dict[str, Kinds]) -> str:

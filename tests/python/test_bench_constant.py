@@ -11,7 +11,7 @@ pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import command
 from bench.constant import asked
-from bench.constant.command import compared
+from bench.constant.command import beside, compared
 from bench.constant.variant import Constant, constants, find, patched
 
 
@@ -42,6 +42,23 @@ def test_one_definition_is_changed():
     assert patched(text, "kFar", "2.5") == text.replace("1e4", "2.5")
     with pytest.raises(ValueError, match="0 times"):
         patched(text, "kNear", "1")
+
+
+@pytest.mark.parametrize(
+    ("value", "others"),
+    [
+        ("0.25", ["0.75", "0.0833333"]),
+        ("4", ["12", "1"]),
+        ("3e-4F", ["0.0009", "0.0001"]),
+    ],
+)
+def test_three_times_and_a_third_are_tried(value, others):
+    assert beside(Constant("a.cpp", "kA", value)) == others
+
+
+def test_values_of_what_is_no_number_must_be_given():
+    with pytest.raises(SystemExit, match="kA is 4 \\* kWidth: say which values"):
+        beside(Constant("a.cpp", "kA", "4 * kWidth"))
 
 
 def test_answers_are_the_same_again(capsys):

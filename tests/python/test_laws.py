@@ -444,6 +444,18 @@ def test_poses_that_are_rounded_beside_a_singularity_are_reached(
                 1.4550751234210626,
             ),
         ),
+        (
+            "offset_wrist",
+            201130130,
+            (
+                0.6339173224649302,
+                -0.7165184447078172,
+                -0.33621874580489397,
+                0.6247922265285761,
+                -0.5729868507956031,
+                -1.062243759303136,
+            ),
+        ),
     ],
 )
 def test_poses_that_had_been_lost_are_found(
@@ -451,8 +463,9 @@ def test_poses_that_had_been_lost_are_found(
 ) -> None:
     """Why: the loop's determinant is flat at many roots, or the database leads nowhere.
 
-    Of the general arm two solutions share an angle; of the last what limits leave of an
-    arc is shorter than what a sweep looked at.
+    Of the general arm two solutions share an angle; of wrist_offset what limits leave
+    of an arc is shorter than what a sweep looked at; of the last a branch ends where
+    its root is.
     """
     arm = random_arms.random_arm(build, number)
     assert arm.robot.within_limits(np.array(q))

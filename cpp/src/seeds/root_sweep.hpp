@@ -47,6 +47,7 @@ class RootSweep final : public BranchList {
   double vague_;          ///< by how much roots that are nearly double may be off [rad]
   double farther_;        ///< vague roots that are farther apart must be nearer to an answer [rad]
   double vague_divisor_;  ///< nothing is concluded from residuals divided by less [units^2]
+  double at_end_;  ///< a branch that only is by less may be one that has the root [mixed units]
   RootFinder roots_;
   LoopPolynomial polynomial_;
   lanes::LoopTarget loop_{};

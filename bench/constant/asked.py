@@ -82,7 +82,7 @@ def of_arm(build: str, seed: int) -> list[Asked]:
     far[:, :3, 3] *= FARTHER
     spin = iksel.Task.free_spin()
     paths = [_path(robot, random) for _ in range(PATHS)]
-    is_swept = robot.structure.kind == iksel.StructureKind.swept
+    has_arcs = robot.dof == 7 and robot.structure.kind == iksel.StructureKind.swept
 
     def near(poses: Array, **more: Any) -> list[Any]:
         return [
@@ -115,7 +115,7 @@ def of_arm(build: str, seed: int) -> list[Asked]:
         ),
         ("tracker", tracked, _of("q")),
     ]
-    if is_swept:
+    if has_arcs:
         goal = iksel.Objective.far_from_limits()
         asked += [
             (

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a constant of the core does: the core with other values of it, on random arms.
 
-For each value the core is compiled, which takes a minute or two, and asked reachable
+For each value the core is compiled, which takes a minute or three, and asked reachable
 poses, noes, moves, sets of solutions, self-motions, tasks, paths and more of random
 arms of each build and of pairs of them. Printed are, beside the value of the source,
 the answers that failed, whether any answer is another, and the processor time. A
@@ -111,7 +111,7 @@ def compared(first: Kinds, others: dict[str, Kinds]) -> str:
 def _asked(library: Path, args: argparse.Namespace) -> Kinds:
     """What bench.constant.asked says of the core in that folder."""
     ask = [str(n) for n in (args.arms, args.seed, args.rounds)] + list(args.builds)
-    path = os.pathsep.join(str(p) for p in (library, ROOT / "python", ROOT))
+    path = os.pathsep.join(str(p) for p in (library, ROOT))
     done = subprocess.run(
         [sys.executable, "-m", "bench.constant.asked", *ask],
         env=os.environ | {"PYTHONPATH": path},

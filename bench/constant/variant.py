@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pybind11
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = ("CMakeLists.txt", "LICENSE", "THIRD_PARTY.md", "cmake", "cpp", "python")
+SOURCES = ("CMakeLists.txt", "cpp", "python", "scripts")
 DEFINITION = r"(?P<before>\bconstexpr [\w:<> ]+ {name} = )(?P<value>[^;]+)(?P<after>;)"
 
 

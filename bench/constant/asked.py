@@ -17,8 +17,10 @@ import numpy as np
 
 import iksel
 from bench import random_arms
+from bench.branches import TOLERANCE
 from bench.laws import postures
 from bench.lost import moved
+from bench.targets import make_targets
 from bench.whole_body.pairs import random_pair
 
 if TYPE_CHECKING:
@@ -67,21 +69,19 @@ def of_arm(build: str, seed: int) -> list[Asked]:
     arm = random_arms.random_arm(build, seed)
     robot = arm.robot
     solver = iksel.Solver(robot)
-    random = np.random.default_rng(seed)
-    odd = postures(arm, ODD, random)
+    odd = postures(arm, ODD, np.random.default_rng(seed))
     known = robot.random_configurations(UNIFORM, seed)
     rounded = robot.fk(robot.random_configurations(OFF, seed + 5))
     poses = np.concatenate(
-        [robot.fk(known), robot.fk(odd), moved(rounded, ROUNDED * 1e-6, seed)]
+        [robot.fk(known), robot.fk(odd), moved(rounded, ROUNDED * TOLERANCE, seed)]
     )
     some = np.concatenate([poses[:SETS], poses[UNIFORM : UNIFORM + SETS]])
     starts = robot.random_configurations(len(some), seed + 9)
-    noes = robot.fk(robot.random_configurations(NOES, seed + 7))
-    noes[:, :3, :3] = _rotations(NOES, random)
+    noes = make_targets(arm, "any_rotation", NOES, seed + 7).poses
     far = noes[:FEW].copy()
     far[:, :3, 3] *= FARTHER
     spin = iksel.Task.free_spin()
-    paths = [_path(robot, random) for _ in range(PATHS)]
+    paths = [_path(robot, seed + 11 + i) for i in range(PATHS)]
     has_arcs = robot.dof == 7 and robot.structure.kind == iksel.StructureKind.swept
 
     def near(poses: Array, **more: Any) -> list[Any]:
@@ -158,18 +158,9 @@ def _batch(solver: iksel.Solver, poses: Array) -> list[Any]:
     ]
 
 
-def _rotations(count: int, random: np.random.Generator) -> Array:
-    """Uniform over all, (N, 3, 3)."""
-    turns = np.linalg.qr(random.normal(size=(count, 3, 3)))[0]
-    turns[np.linalg.det(turns) < 0, :, 0] *= -1
-    return np.asarray(turns)
-
-
-def _path(robot: iksel.Robot, random: np.random.Generator) -> Array:
+def _path(robot: iksel.Robot, seed: int) -> Array:
     """Joint values on a straight line, (WAYPOINTS, dof)."""
-    lower = np.where(np.isfinite(robot.lower), robot.lower, -3)
-    upper = np.where(np.isfinite(robot.upper), robot.upper, 3)
-    first, last = random.uniform(lower, upper, (2, robot.dof))
+    first, last = robot.random_configurations(2, seed)
     return np.linspace(first, first + 0.4 * (last - first), WAYPOINTS)
 
 

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Any
 import iksel
 from bench import random_arms
 from bench.arguments import add_count, add_seed
-from bench.constant.variant import ROOT, Constant, build, find
+from bench.constant.variant import Constant, build, find
+from bench.machine import ROOT
 from bench.markdown import table
 
 if TYPE_CHECKING:

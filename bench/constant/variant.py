@@ -7,12 +7,15 @@ import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import pybind11
 
-ROOT = Path(__file__).resolve().parents[2]
+from bench.machine import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
 SOURCES = ("CMakeLists.txt", "cpp", "python", "scripts")
 DEFINITION = r"(?P<before>\bconstexpr [\w:<> ]+ {name} = )(?P<value>[^;]+)(?P<after>;)"
 

@@ -603,14 +603,10 @@ def test_near_is_nearest_where_arms_are_singular(
     (arm,) = laws.arms(name, 1, None, number)
     count = 60 if name in random_arms.BUILDS else 600
     known, starts = moves.known_and_starts(arm, count, number, odd=True)
-    least = moves.least_known(
-        iksel.Solver(arm.robot),
-        arm.robot.fk(known[pose]),
-        known[pose],
-        starts[pose],
-        odd=True,
-    )
-    found = iksel.Solver(arm.robot).solve(arm.robot.fk(known[pose]), near=starts[pose])
+    solver = iksel.Solver(arm.robot)
+    target, start = arm.robot.fk(known[pose]), starts[pose]
+    least = moves.least_known(solver, target, known[pose], start, odd=True)
+    found = solver.solve(target, near=start)
     assert found.move < least + moves.LONGER
 
 

@@ -2,6 +2,7 @@
 // How far joints move between configurations, by the norm and weights that are asked for.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -25,6 +26,11 @@ class JointMove {
   [[nodiscard]] double length(const JointVector& difference) const {
     const auto weighted = weights_.cwiseProduct(difference);
     return norm_ == MoveNorm::two ? weighted.norm() : weighted.cwiseAbs().maxCoeff();
+  }
+  /// What other joints may move by where these make up a part of the whole.
+  [[nodiscard]] double rest(double whole, double part) const {
+    if (part >= whole) return 0;
+    return norm_ == MoveNorm::two ? std::sqrt((whole - part) * (whole + part)) : whole;
   }
   [[nodiscard]] const JointVector& weights() const { return weights_; }
   [[nodiscard]] MoveNorm norm() const { return norm_; }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/constants.hpp"
 #include "base/function_ref.hpp"
 #include "goal/coaxial_joints.hpp"
 #include "goal/joint_move.hpp"
@@ -55,6 +56,8 @@ class Collector : public SearchState {
     bool until_complete;
     /// Of a redundant arm, so many solutions spread evenly over its self-motion will do; 0: no.
     int spread = 0;
+    /// Where the nearest is wanted, nothing that is farther away is of use.
+    double within = kInfinity;
   };
 
   /// `is_satisfied` is asked between stages. All must outlive this.
@@ -115,6 +118,8 @@ class Collector : public SearchState {
     if (counts_moves_ || !has_any() || !nearest_to_) return found_.least_cost();
     return move_to(nearest());
   }
+  /// What a move must be less than to be of use; infinite if all are.
+  [[nodiscard]] double within() const { return aim_.within; }
   /// Which of those that were found, of one at least, is nearest to what the nearest is wanted to.
   [[nodiscard]] std::size_t nearest() const {
     std::size_t least = 0;

@@ -54,7 +54,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
 /// Refines the least moves to the curve, the nearest first, until one leads to such an answer.
 void refine_nearest(const AllSearch& parts, NearestOnCurve& curve) {
   Collector& answers = parts.answers;
-  const double known = answers.least_move();
+  const double known = std::min(answers.least_move(), answers.within());
   curve.find_between(known);
   parts.work.lap(&StageTimes::query);
   bool has_led_to_answer = false;
@@ -65,7 +65,8 @@ void refine_nearest(const AllSearch& parts, NearestOnCurve& curve) {
     const double move = answers.least_move();
     has_led_to_answer = move < known && move < curve.move(0) + kLost;
   }
-  answers.settle(curve.is_settled() && has_led_to_answer);
+  const bool is_too_far = answers.least_move() >= answers.within();
+  answers.settle(curve.is_settled() && (has_led_to_answer || is_too_far));
 }
 
 /// Between points of arcs no farther apart, a straight line is near enough to the curve [rad].
@@ -114,21 +115,24 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   const bool stays = curve.prefers_staying(move);
   RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
-  const bool is_seen = curve.find_at_samples(Y, near, move, answers.least_move());
+  const bool is_bounded = answers.within() < kInfinity;
+  const double known = std::min(answers.least_move(), answers.within());
+  const bool is_seen = curve.find_at_samples(Y, near, move, known);
   parts.work.lap(&StageTimes::query);
   // Where there is none, what looks for any is sooner through than what looks between samples.
-  if (!is_seen && !answers.has_any()) {
+  if (!is_seen && !answers.has_any() && !is_bounded) {
     const Explored any = explore_any(parts, Y, /*at_samples=*/false);
     if (any.is_done && !answers.has_any()) return any;
   }
   refine_nearest(parts, curve);
-  if (answers.has_any()) {
+  if (answers.least_move() < answers.within()) {
     const bool is_singular = parts.model.is_almost_singular(answers.solution(answers.nearest()));
     if (is_singular || curve.is_in_doubt()) {
       explore_beside_curve(parts, Y, is_singular || curve.is_degenerate());
     }
     return Explored::done();
   }
+  if (answers.has_any() || is_bounded) return Explored::done();
   return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }
 

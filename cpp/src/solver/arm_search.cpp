@@ -81,24 +81,28 @@ Pose ArmSearch::target_of_arm(int tip, const JointVector& q) {
 }
 
 Result ArmSearch::solve(const Solver& solver, const ChainPart& part, const Pose& target,
-                        const SolveRequest& request, Effort effort, JointVector& q) {
+                        const SolveRequest& request, Effort effort, double within, JointVector& q) {
+  const Solver::Impl& of = *solver.impl_;
+  const WorkspacePool::Lease lease(of.workspaces);
   const auto solve_quickly = [&] {
-    const Solver::Impl& of = *solver.impl_;
     const TaskSpace task = of.task_of(request);
-    const WorkspacePool::Lease lease(of.workspaces);
     return of.find_first(Goal(of.model(), task, target), request, lease.get(), nullptr, effort);
   };
-  Result result = effort == Effort::quick ? solve_quickly() : solver.solve(target, request);
+  Result result = effort == Effort::quick
+                      ? solve_quickly()
+                      : of.solve(&target, request, lease.get(), nullptr, within);
   if (has_joints(result.status)) put(result.q, part.joints, q);
   return result;
 }
 
-bool ArmSearch::solve_arm(int tip, Effort effort, JointVector& q) {
+bool ArmSearch::solve_arm(int tip, Effort effort, double within, JointVector& q) {
   const auto i = static_cast<std::size_t>(tip);
+  // Without weights in the request, its joints have none in the move that is bounded.
+  if (of_arm_[i].weights.size() == 0) within = kInfinity;
   SolveRequest bare;
   bare.task = of_arm_[i].task;
   return solve(*solvers_[i].arm, *goal_.model().tip(tip).arm, target_of_arm(tip, q),
-               effort == Effort::quick ? bare : of_arm_[i], effort, q)
+               effort == Effort::quick ? bare : of_arm_[i], effort, within, q)
       .success();
 }
 
@@ -120,7 +124,7 @@ void ArmSearch::bring_closest(int tip, JointVector& q) {
   SolveRequest request = of_arm_[i];
   request.closest.emplace();
   solve(*solvers_[i].arm, *goal_.model().tip(tip).arm, target_of_arm(tip, q), request, Effort::full,
-        q);
+        kInfinity, q);
 }
 
 Result ArmSearch::solve_chain(int tip, Effort effort, bool from_here, JointVector& q) {
@@ -129,7 +133,7 @@ Result ArmSearch::solve_chain(int tip, Effort effort, bool from_here, JointVecto
   request.task = goal_.task(tip).task();
   if (from_here) request.seeds.push_back(picked(q, chain.joints));
   Result result = solve(solvers_[static_cast<std::size_t>(tip)].chain, chain,
-                        goal_.target_at(tip, q), request, effort, q);
+                        goal_.target_at(tip, q), request, effort, kInfinity, q);
   if (result.success()) q = goal_.model().joints.clamp(q);
   return result;
 }

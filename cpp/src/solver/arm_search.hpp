@@ -38,8 +38,9 @@ class ArmSearch {
   [[nodiscard]] bool knows_nearest() const;
   /// Solves for the joints of that tip's arm, the shared ones as in q; false leaves q as it is.
   /// Limits that arms share are left to what iterates all joints. With little effort nothing is
-  /// asked of the answer but the task.
-  bool solve_arm(int tip, Effort effort, JointVector& q);
+  /// asked of the answer but the task; with all, where the nearest is wanted, none need be found
+  /// whose move is more than `within`.
+  bool solve_arm(int tip, Effort effort, double within, JointVector& q);
   /// The joint values of that tip's arm in as many solutions, at most; those nearest to the
   /// request's `near` first, if it has one.
   std::vector<JointVector> solve_arm(int tip, const JointVector& q, int most);
@@ -54,7 +55,7 @@ class ArmSearch {
   /// What a part's solver says; q gets the part's joints, if it says any. With little effort its
   /// task and seeds are read of the request.
   static Result solve(const Solver& solver, const ChainPart& part, const Pose& target,
-                      const SolveRequest& request, Effort effort, JointVector& q);
+                      const SolveRequest& request, Effort effort, double within, JointVector& q);
   /// Whether its task bounds axes of the frame in which its target is.
   [[nodiscard]] bool is_along_frame(int tip) const;
   /// The target as the arm's base sees it.

@@ -149,10 +149,10 @@ void Solver::Impl::collect(Collector& collector, Workspace& workspace, StageTime
 }
 
 Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Workspace& workspace,
-                           StageTimes* times) const {
+                           StageTimes* times, double within) const {
   const Scene* scene = request.scene ? &*request.scene : nullptr;
   return with_goal(targets, request, scene, [&](const Goal& goal) {
-    Result result = find_answer(goal, request, workspace, times);
+    Result result = find_answer(goal, request, workspace, times, within);
     if (result.success() || !request.closest) return result;
     give_closest(options, goal, request, to_vector(*request.closest, rotation_weight()), workspace,
                  result);
@@ -161,7 +161,7 @@ Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Wor
 }
 
 Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
-                                 Workspace& workspace, StageTimes* times) const {
+                                 Workspace& workspace, StageTimes* times, double within) const {
   if (!ranks_answers(request) && !request.filter) {
     Result first = find_first(goal, request, workspace, times);
     if (!request.exact || first.status != Status::in_collision) return first;
@@ -173,7 +173,7 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
   AnswerSelector selector(goal, request, workspace.collected.found, screen);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a screen the selector decides: nothing may have passed it yet.
-  const Collector::Aim aim{kSame, selector.wants_all() && !screen.is_set()};
+  const Collector::Aim aim{kSame, selector.wants_all() && !screen.is_set(), 0, within};
   Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace, times);
 

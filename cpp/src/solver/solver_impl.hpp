@@ -65,12 +65,13 @@ struct Solver::Impl {
   /// As in search/run.hpp, of any number of tips.
   template <typename Answers>
   Proof search_for(Answers& answers, Workspace& workspace, StageTimes* times) const;
-  /// The best answer to the whole request, but for `closest`.
+  /// The best answer to the whole request, but for `closest`. Where that is the nearest, none that
+  /// is farther than `within` need be found.
   Result find_answer(const Goal& goal, const SolveRequest& request, Workspace& workspace,
-                     StageTimes* times) const;
+                     StageTimes* times, double within = kInfinity) const;
   /// The same, or what is closest. A target for each tip, as in the other calls.
   Result solve(const Pose* targets, const SolveRequest& request, Workspace& workspace,
-               StageTimes* times) const;
+               StageTimes* times, double within = kInfinity) const;
   Solutions solve_all(const Goal& goal, const SolveAllOptions& all, const SolveRequest& request,
                       Workspace& workspace) const;
   [[nodiscard]] Diagnosis diagnose(const Pose& target, const SolveRequest& request) const;

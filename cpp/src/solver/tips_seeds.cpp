@@ -136,7 +136,7 @@ bool ArmSeeds::next_stage() {
 }
 
 void ArmSeeds::extend(std::size_t k, JointVector q) {
-  if (is_too_far(k, q) || seeds_.size() >= kCombinations) return;
+  if (left(k, q) == 0 || seeds_.size() >= kCombinations) return;
   if (k == order_.size()) {
     if (!knows_nearest_ || !collector_->has_beside(q, kBasinRadius) ||
         to_->move.length(q - to_->from) < last_best_) {
@@ -161,12 +161,13 @@ const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q, B
   // Where the nearest is known it is found, or that there is none, at once.
   const bool is_quick = effort_ == Effort::quick && !knows_nearest_;
   JointVector solved = q;
-  if (is_quick && !arms_.solve_arm(tip, Effort::quick, solved)) return *found;
+  if (is_quick && !arms_.solve_arm(tip, Effort::quick, kInfinity, solved)) return *found;
   // Which answer matters to those who collect.
   const bool will_do = is_quick && collector_ == nullptr;
   if (of_each_ > 1) {
     *found = arms_.solve_arm(tip, q, of_each_);
-  } else if (will_do || arms_.solve_arm(tip, Effort::full, solved)) {
+  } else if (const double within = knows_nearest_ ? left(0, q) : kInfinity;
+             will_do || arms_.solve_arm(tip, Effort::full, within, solved)) {
     found->push_back(picked(solved, model_.tip(tip).arm->joints));
   }
   return *found;
@@ -204,7 +205,7 @@ void ArmSeeds::add_mixed(Behind& a, Behind& b, unsigned tips_of_b) {
     jumps[is_of_b] |= !there || there->empty() ||
                       (here.front() - there->front()).cwiseAbs().maxCoeff() > kBasinRadius;
     put(here.front(), model_.tip(tip).arm->joints, q);
-    if (is_too_far(k + 1, q)) return;
+    if (left(k + 1, q) == 0) return;
   }
   if (jumps[0] && jumps[1]) seeds_.push_back(q);
 }
@@ -228,14 +229,14 @@ void ArmSeeds::sort_out() {
   seeds_.resize(most);
 }
 
-bool ArmSeeds::is_too_far(std::size_t arms, const JointVector& q) const {
-  if (to_ == nullptr || last_best_ == kInfinity) return false;
+double ArmSeeds::left(std::size_t arms, const JointVector& q) const {
+  if (to_ == nullptr || last_best_ == kInfinity) return kInfinity;
   JointVector moved = to_->from;
   for (const int joint : model_.shared) moved[joint] = q[joint];
   for (std::size_t k = 0; k < arms; ++k) {
     for (const int joint : model_.tip(order_[k]).arm->joints) moved[joint] = q[joint];
   }
-  return to_->move.length(moved - to_->from) >= kWorthDescending * last_best_;
+  return to_->move.rest(kWorthDescending * last_best_, to_->move.length(moved - to_->from));
 }
 
 bool ChainSeeds::next_stage() {
@@ -263,7 +264,7 @@ void ChainSeeds::bring_others(int lead) {
     if (effort_ == Effort::full) {
       arms_.bring_closest(tip, q_);
     } else if (arms_.has_arm(tip)) {
-      arms_.solve_arm(tip, effort_, q_);
+      arms_.solve_arm(tip, effort_, kInfinity, q_);
     }
   }
 }

@@ -72,7 +72,7 @@ class ArmSeeds {
  private:
   [[nodiscard]] bool wants_many() const { return collector_ != nullptr && to_ == nullptr; }
   /// Values of the shared joints, as in q, and of those arms that were solved behind them the
-  /// solutions.
+  /// solutions; where the nearest are wanted those that were of use by then.
   struct Behind {
     JointVector q;
     std::vector<std::optional<std::vector<JointVector>>> arms;
@@ -90,9 +90,9 @@ class ArmSeeds {
   void add_mixed(Behind& a, Behind& b, unsigned tips_of_b);
   /// Leaves those that are free, and where the nearest is wanted the nearest first.
   void sort_out();
-  /// Whether the joints of q that are set so far move too far: the shared ones, and those of the
-  /// first `arms` arms of the order.
-  [[nodiscard]] bool is_too_far(std::size_t arms, const JointVector& q) const;
+  /// What the others may move by, where the joints of q that are set so far move as they do: the
+  /// shared ones, and those of the first `arms` arms of the order. 0: these move too far.
+  [[nodiscard]] double left(std::size_t arms, const JointVector& q) const;
 
   const Goal& goal_;
   const TipsModel& model_;

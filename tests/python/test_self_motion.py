@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import iksel
+from bench.random_arms import random_arm
 
 
 @pytest.fixture(scope="module", params=["panda", "iiwa14", "xarm7"])
@@ -92,6 +93,33 @@ def test_near_lies_on_an_arc(solver) -> None:
             away -= np.where(turns > 0, 2 * np.pi * np.round(away / (2 * np.pi)), 0.0)
             least = min(least, np.abs(away).max(axis=1).min())
         assert least <= 0.02
+
+
+@pytest.mark.parametrize(("name", "joint"), [("panda", 3), ("panda", 5), ("fr3", 3)])
+def test_an_arc_goes_on_where_it_touches_a_limit(made, name, joint) -> None:
+    """The curve turns back there: both of its sides are inside."""
+    solver = made.solver(name)
+    robot = solver.robot
+    for known in robot.random_configurations(30, 4):
+        q = known.copy()
+        q[joint], q[4] = robot.upper[joint], 0.0
+        pose = robot.fk(q)
+        every = np.vstack([arc.q for arc in solver.self_motion(pose, spacing=0.05)])
+        for turn in (-0.3, 0.3):
+            start = q.copy()
+            start[6] = np.clip(q[6] + turn, robot.lower[6], robot.upper[6])
+            near = solver.solve(pose, near=start)
+            assert near
+            assert np.abs(every - near.q).max(axis=1).min() <= 0.06
+
+
+def test_an_arc_between_two_samples_is_found() -> None:
+    """As short as it is, it is there where a solution is."""
+    robot = random_arm("rail", 9044).robot
+    solver = iksel.Solver(robot)
+    for pose in robot.fk(robot.random_configurations(10, 79044)):
+        assert solver.solve(pose)
+        assert solver.self_motion(pose)
 
 
 def test_out_of_reach_and_indices(solver) -> None:

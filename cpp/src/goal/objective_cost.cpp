@@ -51,13 +51,14 @@ struct Repulsion {
   double cost, slope, curvature;
 
   Repulsion(double above_lower, double range) {
-    // Nearer than this part of the range a limit repels no more, so that the cost stays finite.
+    // Nearer than this part of the range a limit repels no more than there, so that the cost stays
+    // finite; it goes on in a straight line, so that the way off a limit is down.
     constexpr double kNearest = 1e-4;
     const double x = std::min(std::max(above_lower / range, kNearest), 1 - kNearest);
     const double below = 1 / x;
     const double above = 1 / (1 - x);
-    cost = 0.25 * (below + above);
     slope = 0.25 * (above * above - below * below) / range;
+    cost = 0.25 * (below + above) + slope * (above_lower - x * range);
     curvature = 0.5 * (below * below * below + above * above * above) / (range * range);
   }
 };

@@ -92,12 +92,6 @@ struct Workspace {
       return curve->find(T_base_tcp, Y, ends ? &*ends : nullptr, sweep ? &*sweep : nullptr, known,
                          count, spacing);
     }
-    /// The proof that a self-motion has no configuration inside the limits, for the same; none if
-    /// one is found between the samples, or in doubt.
-    Proof find_none(const Pose& T_base_tcp, const Pose& Y) {
-      if (ends && ends->rules_out(T_base_tcp)) return Proof::closed_form;
-      return sweep->find_between(Y) ? Proof::none : sweep->proof_of_none();
-    }
     /// Whether the ends of arcs tell in closed form that there are none.
     [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.

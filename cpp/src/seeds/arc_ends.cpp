@@ -63,15 +63,6 @@ bool ArcEnds::find_crossings(std::size_t side, const Pose& T_base_tcp) {
   return solve(crossing_->first, value, crossing.base * (back * from_first));
 }
 
-bool ArcEnds::rules_out(const Pose& T_base_tcp) {
-  if (!are_closed()) return false;
-  begin();
-  for (std::size_t i = 0; i < places(); ++i) {
-    if (!find(i, T_base_tcp) || count() > 0) return false;
-  }
-  return true;
-}
-
 bool ArcEnds::solve(End& end, double locked, const Pose& T_base_tcp) {
   const Pose Y = end.base_inverse * T_base_tcp * end.tip_inverse;
   const auto find = [&](BranchList& solutions, bool wants_all) {

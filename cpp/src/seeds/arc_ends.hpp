@@ -34,8 +34,6 @@ class ArcEnds {
   /// Whether it can be told in closed form that no curve of solutions lies inside the limits: none
   /// goes through one of the places.
   [[nodiscard]] bool are_closed() const { return are_closed_; }
-  /// Whether that is so.
-  bool rules_out(const Pose& T_base_tcp);
   /// Forgets what was added.
   void begin() { found_.clear(); }
   [[nodiscard]] int count() const { return static_cast<int>(found_.size() / kCurveJoints); }

@@ -56,6 +56,9 @@ class Curve {
     Place on_curve;            ///< oriented
     bool leads_in, leads_out;  ///< whether it leads inside, and whether it comes from there
     bool is_taken;             ///< an arc begins or ends there
+
+    /// Whether the curve but touches the limit there, or all but that.
+    [[nodiscard]] bool touches() const { return leads_in && leads_out; }
   };
   /// From an end or a sample along a curve.
   struct Walk {

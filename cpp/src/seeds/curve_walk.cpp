@@ -13,11 +13,15 @@ void Curve::follow_from_ends() {
     // Backwards what leads to an end that was not known, or through a singularity.
     walks.clear();
     for (End& end : ends_) {
-      if (end.is_taken || !(is_reversed ? end.leads_out : end.leads_in)) continue;
-      if (is_reversed || !end.leads_out) end.is_taken = true;
+      if (end.is_taken || end.touches() || end.leads_in == is_reversed) continue;
+      end.is_taken = true;
       walks.push_back({{end.q}, end.on_curve.tangent, end.at, is_reversed, {}});
     }
     follow(walks);
+  }
+  // Mostly it is on an arc by now, which goes over it.
+  for (const End& end : ends_) {
+    if (end.touches()) follow_both_ways(end.q.data());
   }
 }
 

@@ -66,7 +66,7 @@ void put(const CurveWalker::Place& at, std::size_t lane, lanes::CurvePack& pack)
 CurveWalker::CurveWalker(const ChainModel& model, const lanes::LaneKernels& kernels)
     : chain_(make_lane_chain(model)), kernels_(kernels) {
   model.joints.visit_limits([&](const Limit& limit) {
-    if (limit.joint < 0 || !model.joints.is_periodic(limit.joint)) limits_.push_back(limit);
+    if (limit.joint < 0 || !model.joints.winds(limit.joint)) limits_.push_back(limit);
   });
 }
 

@@ -118,14 +118,15 @@ SelfMotion Solver::self_motion(const Pose& T_base_tip, double spacing) const {
   const ChainModel& model = impl_->model();
   SelfMotion motion;
   const Goal goal(model, impl_->task, target);
-  if (goal.is_out_of_reach()) {
-    motion.status = Status::out_of_reach;
-    motion.proof = Proof::reach;
-    return motion;
-  }
+  // The arc on which it lies may be all there is, between two samples.
+  const Result first = impl_->find_first(goal, impl_->nothing, lease.get(), nullptr);
+  motion.status = first.status;
+  motion.proof = first.proof;
+  if (!first.success() && first.proof != Proof::none) return motion;
   Workspace::InLanes& lanes = *lease.get().lanes;
   const Pose Y = lanes.query.reduce(target);
-  const std::vector<Curve::Arc>& arcs = lanes.find_arcs(goal.target(), Y, spacing);
+  const std::vector<Curve::Arc>& arcs =
+      lanes.find_arcs(goal.target(), Y, spacing, first.q.data(), first.success() ? 1 : 0);
   std::vector<Curve::Joints> points;
   for (const auto& arc : arcs) points.insert(points.end(), arc.q.begin(), arc.q.end());
   Work work(options().max_attempts);
@@ -133,10 +134,10 @@ SelfMotion Solver::self_motion(const Pose& T_base_tip, double spacing) const {
                  /*are_answers=*/true, work);
   const RowAnswers answers = refine_rows(seeds, goal, Y, kNearAnswer, lanes.refiner, work);
   const std::optional<Elbow> elbow = Elbow::of(model);
-  std::size_t first = 0;
+  std::size_t row = 0;
   for (const auto& found : arcs) {
-    SelfMotionArc arc = make_arc(goal, found, first, answers, elbow);
-    first += found.q.size();
+    SelfMotionArc arc = make_arc(goal, found, row, answers, elbow);
+    row += found.q.size();
     if (!arc.q.empty()) motion.arcs.push_back(std::move(arc));
   }
   std::stable_sort(
@@ -145,8 +146,6 @@ SelfMotion Solver::self_motion(const Pose& T_base_tip, double spacing) const {
   if (!motion.arcs.empty()) {
     motion.status = Status::solved;
     motion.proof = Proof::answer;
-  } else {
-    motion.proof = lanes.find_none(goal.target(), Y);
   }
   return motion;
 }

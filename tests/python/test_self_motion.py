@@ -8,9 +8,9 @@ import pickle
 
 import numpy as np
 import pytest
+from bench.random_arms import random_arm
 
 import iksel
-from bench.random_arms import random_arm
 
 
 @pytest.fixture(scope="module", params=["panda", "iiwa14", "xarm7"])

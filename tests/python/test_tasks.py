@@ -10,6 +10,7 @@ import re
 import iksel_cpp
 import numpy as np
 import pytest
+from bench.random_arms import random_arm
 from command_line import Run, assert_bad, assert_good
 from conftest import CASES
 
@@ -204,6 +205,29 @@ def test_an_infinite_cost_refuses(made, name) -> None:
     )
     assert never.status == iksel.Status.rejected
     assert math.isnan(never.cost)
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "xarm7", "fr3"])
+@pytest.mark.parametrize("objective", ["limits", "manipulability"])
+def test_no_solution_of_seven_joints_is_better(made, name: str, objective: str) -> None:
+    """Solutions all over the self-motion are looked at, not only where seeds lead."""
+    solver = made.solver(name)
+    for pose in solver.robot.fk(solver.robot.random_configurations(60, seed=1)):
+        best = solver.solve_all(pose, objective=objective)[0].cost
+        assert solver.solve(pose, objective=objective).cost <= best + 1e-3 * abs(best)
+
+
+@pytest.mark.parametrize(
+    ("build", "number", "pose"),
+    [("shoulder_elbow_offset", 5027, 0), ("wrist_offset", 5119, 1)],
+)
+def test_far_from_limits_leaves_a_limit(build: str, number: int, pose: int) -> None:
+    """Also from a seed that stands at it."""
+    robot = random_arm(build, number).robot
+    solver = iksel.Solver(robot)
+    target = robot.fk(robot.random_configurations(4, seed=number - 5000)[pose])
+    result = solver.solve(target, objective="limits")
+    assert result.cost <= 1.01 * solver.solve_all(target, objective="limits")[0].cost
 
 
 def test_exceptions_of_an_objective_reach_the_caller(made) -> None:

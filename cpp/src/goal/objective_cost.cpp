@@ -80,8 +80,11 @@ double ObjectiveCost::of_limits(const JointVector& q, JointVector* gradient,
     // c c^T is no more than its rows' sums of sizes on the diagonal.
     if (curvature != nullptr) *curvature += at.curvature * limit.size * c.cwiseAbs();
   });
-  // Joints without limits have a little, so that they do not drift.
-  if (curvature != nullptr) *curvature = (curvature->array() == 0).select(1e-6, *curvature);
+  // Joints without limits have a little, so that they do not drift; and of what one at its limit
+  // has as much as rounding leaves of a step's equations.
+  if (curvature != nullptr) {
+    *curvature = curvature->cwiseMax(std::max(1e-8 * curvature->maxCoeff(), 1e-6));
+  }
   return sum;
 }
 

@@ -13,6 +13,9 @@
 
 namespace iksel {
 
+/// Seeds where solutions come in families, which never end, and the best is wanted.
+inline constexpr int kRedundantSeeds = 64;
+
 class AnswerSelector {
  public:
   /// All must outlive this.
@@ -24,6 +27,11 @@ class AnswerSelector {
   bool is_satisfied(const Collector& search);
   /// Whether the best is known only when all are.
   [[nodiscard]] bool wants_all() const { return ranks_ && !goal_.is_redundant(); }
+  /// So many solutions spread over a self-motion lead to the best, where that is not the nearest to
+  /// some configuration; else 0.
+  [[nodiscard]] int spread() const {
+    return ranks_ && goal_.is_redundant() && !nearest_to_ ? kRedundantSeeds : 0;
+  }
   /// The best of what passed of a search; false if nothing did.
   bool select(const Collector& search, JointVector& q);
   /// Whether what was refused may have images that nobody was asked about: there are too many.

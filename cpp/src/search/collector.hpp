@@ -88,6 +88,9 @@ class Collector : public SearchState {
   void look_for_partners(bool look);
   /// Says that all branches in closed form were tried: what is left lies around those in doubt.
   void set_all_branches_tried() { has_all_branches_ = true; }
+  /// Says that what was found lies all over a self-motion.
+  void set_spread_out() { are_spread_out_ = true; }
+  [[nodiscard]] bool are_spread_out() const { return are_spread_out_; }
   /// Says that the nearest is looked for on families of solutions that are no curves.
   void set_surfaces() { are_surfaces_ = true; }
   [[nodiscard]] bool are_surfaces() const { return are_surfaces_; }
@@ -101,6 +104,8 @@ class Collector : public SearchState {
   void descend_from_nearest(std::size_t most);
   /// Whether a solution may be one of a family: the arm is redundant, or singular there, or almost.
   [[nodiscard]] bool is_singular(const JointVector& q) const;
+  /// Whether all there are are wanted.
+  [[nodiscard]] bool wants_all() const { return aim_.until_complete; }
   /// Whether more than the first answer is wanted.
   [[nodiscard]] bool wants_more() const { return aim_.until_complete || ranks_answers(request_); }
   /// Whether of answers the nearest is the best.
@@ -185,6 +190,7 @@ class Collector : public SearchState {
   bool looks_for_partners_ = true;
   bool has_all_branches_ = false;
   bool are_surfaces_ = false;
+  bool are_spread_out_ = false;
   bool has_converged_ = false;  ///< from `near`
   bool is_settled_ = false;
   bool is_out_of_time_ = false;

@@ -168,7 +168,10 @@ void explore_families(const AllSearch& parts, const Pose& Y) {
 
 Explored explore_curve(const AllSearch& parts, const Pose& Y) {
   Collector& answers = parts.answers;
-  if (answers.spread() > 0) return explore_spread(parts, Y);
+  if (answers.spread() > 0) {
+    answers.set_spread_out();
+    return explore_spread(parts, Y);
+  }
   if (answers.wants_nearest()) return explore_nearest(parts, Y);
   if (!answers.wants_nearest_free()) return Explored::doubtful();
   // Mostly the nearest of all is free.

@@ -93,6 +93,9 @@ Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, con
     if (roots.is_done) return roots.proof;
   }
   if (lanes.sweep) {
+    if (answers.spread() > 0 && !answers.wants_all() && parts.run(lanes.refiner, near, given)) {
+      return Proof::none;
+    }
     if (const auto curve = explore_curve(parts, Y); curve.is_done) return curve.proof;
   }
   if (answers.wants_nearest() && explore_held(parts).is_done) return Proof::none;

@@ -173,7 +173,8 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
   AnswerSelector selector(goal, request, workspace.collected.found, screen);
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a screen the selector decides: nothing may have passed it yet.
-  const Collector::Aim aim{kSame, selector.wants_all() && !screen.is_set(), 0, within};
+  const bool wants_all = selector.wants_all() && !screen.is_set();
+  const Collector::Aim aim{kSame, wants_all, selector.spread(), within};
   Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace, times);
 

@@ -7,6 +7,7 @@ import pickle
 
 import numpy as np
 import pytest
+from bench.tips import torso
 from trees import two_armed, two_arms_on_torso
 from tubes import URDF
 from urdf_text import joint, limits, link, mimic, robot
@@ -459,3 +460,47 @@ def test_a_shared_joint_needs_room_between_its_limits() -> None:
     tips = ["left_hand", "right_hand"]
     with pytest.raises(iksel.UrdfError, match="'torso'.*nothing between its limits"):
         iksel.Robot.from_urdf(robot(*parts), tip_links=tips)
+
+
+def test_a_joint_that_another_chain_limits_has_an_end() -> None:
+    """Whichever of the two comes first."""
+    text = robot(
+        link("b", "a", "a2", "c", "c2"),
+        joint("lead", "b", "a", kind="continuous"),
+        joint("x", "a", "a2", inside=limits(-1, 1)),
+        joint("follow", "b", "c", inside=mimic("lead", "", limits(-0.5, 0.5))),
+        joint("y", "c", "c2", inside=limits(-1, 1)),
+    )
+    for tips in (["a2", "c2"], ["c2", "a2"]):
+        both = iksel.Robot.from_urdf(text, tip_links=tips)
+        assert both.joint_types == [iksel.JointType.revolute] * 3
+        assert both.within_limits(both.random_configurations(200, SEED)).all()
+
+
+@pytest.fixture(scope="module")
+def coupled() -> iksel.Solver:
+    """Two arms that share no joint; one limit is of both."""
+    arm = iksel.load_robot("ur5e")
+    elbows = {f"{side}_{arm.joint_names[2]}": 1 for side in "lr"}
+    return iksel.Solver(
+        iksel.Robot.from_urdf(
+            torso(arm, ()),
+            tip_links=[f"{side}_{arm.tip_link}" for side in "lr"],
+            coupled_limits=[iksel.CoupledLimit(elbows, lower=-0.2, upper=0.2)],
+        )
+    )
+
+
+def test_solutions_of_arms_that_a_limit_couples_go_together(coupled) -> None:
+    """Each arm's first solution need not go with the other's."""
+    known = coupled.robot.random_configurations(400, SEED)
+    assert coupled.solve_batch(coupled.robot.fk(known)).success.all()
+
+
+def test_a_filter_sees_every_pair_of_solutions(coupled) -> None:
+    for known in coupled.robot.random_configurations(40, SEED):
+
+        def is_beside(q: np.ndarray, known: np.ndarray = known) -> np.ndarray:
+            return (np.abs(q - known) < 0.3).all(axis=1)
+
+        assert coupled.solve(coupled.robot.fk(known), filter=is_beside)

@@ -131,6 +131,9 @@ std::vector<int> TipsModel::add_joints(const ChainModel& model) {
     // A joint that follows this one on another chain may narrow its limits there.
     joints.lower[place] = std::max(joints.lower[place], chain.lower[j]);
     joints.upper[place] = std::min(joints.upper[place], chain.upper[j]);
+    if (joints.type(place) == JointType::continuous) {
+      joints.types[static_cast<std::size_t>(place)] = chain.type(j);
+    }
     if (!chain.repeats[static_cast<std::size_t>(j)]) {
       joints.repeats[static_cast<std::size_t>(place)] = false;
     }

@@ -21,16 +21,16 @@ constexpr int kManyValues = 256;
 /// Seeds of one chain each, after the first values.
 constexpr int kChainSeeds = 24;
 /// Combinations of the arms' solutions behind one value, at most.
-constexpr int kCombinations = 256;
+constexpr std::size_t kCombinations = 256;
 /// Of those that are free, so many of the nearest, where the nearest is wanted; so many where many
-/// are: the others lie behind other values.
+/// are: the others lie behind other values, if there are some.
 constexpr std::size_t kNearestKept = 4;
 constexpr std::size_t kManyKept = 16;
 
 /// How many solutions of each of so many arms give kCombinations.
 int solutions_of_each(int arms) {
   int each = 1;
-  while (std::pow(each + 1, arms) <= kCombinations) ++each;
+  while (std::pow(each + 1, arms) <= double{kCombinations}) ++each;
   return each;
 }
 
@@ -103,7 +103,11 @@ ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>&
                                                           : kSharedValues,
               to_),
       order_(goal.tips()->order()) {
-  of_each_ = wants_many() || goal.scene() != nullptr ? solutions_of_each(model_.tip_count()) : 1;
+  // Of arms that only a sum couples, some of their solutions may go together.
+  const bool go_together =
+      effort == Effort::full && model_.shared.empty() && !model_.joints.sums.empty();
+  const bool combines = wants_many() || goal.scene() != nullptr || go_together;
+  of_each_ = combines ? solutions_of_each(model_.tip_count()) : 1;
 }
 
 bool ArmSeeds::next_stage() {
@@ -216,8 +220,13 @@ void ArmSeeds::sort_out() {
                                 [&](const JointVector& q) { return !goal_.is_free(q); }),
                  seeds_.end());
   }
-  if (of_each_ == 1 || collector_ == nullptr) return;
-  const std::size_t most = std::min(seeds_.size(), to_ != nullptr ? kNearestKept : kManyKept);
+  if (of_each_ == 1) return;
+  keep_sums();
+  if (collector_ == nullptr) return;
+  const std::size_t kept = to_ != nullptr          ? kNearestKept
+                           : model_.shared.empty() ? kCombinations
+                                                   : kManyKept;
+  const std::size_t most = std::min(seeds_.size(), kept);
   if (to_ != nullptr) {
     const auto length = [&](const JointVector& q) { return to_->move.length(q - to_->from); };
     std::stable_sort(seeds_.begin(), seeds_.end(),
@@ -227,6 +236,16 @@ void ArmSeeds::sort_out() {
     for (std::size_t i = 0; i < most; ++i) seeds_[i] = seeds_[i * seeds_.size() / most];
   }
   seeds_.resize(most);
+}
+
+void ArmSeeds::keep_sums() {
+  const JointSpace& joints = model_.joints;
+  if (joints.sums.empty()) return;
+  for (JointVector& q : seeds_) joints.wrap_sums(q.data());
+  const auto beyond =
+      std::stable_partition(seeds_.begin(), seeds_.end(),
+                            [&](const JointVector& q) { return joints.contains(q.data()); });
+  if (beyond != seeds_.begin()) seeds_.erase(beyond, seeds_.end());
 }
 
 double ArmSeeds::left(std::size_t arms, const JointVector& q) const {

@@ -90,6 +90,8 @@ class ArmSeeds {
   void add_mixed(Behind& a, Behind& b, unsigned tips_of_b);
   /// Leaves those that are free, and where the nearest is wanted the nearest first.
   void sort_out();
+  /// Of what does not keep to all sums nothing is of use where something does.
+  void keep_sums();
   /// What the others may move by, where the joints of q that are set so far move as they do: the
   /// shared ones, and those of the first `arms` arms of the order. 0: these move too far.
   [[nodiscard]] double left(std::size_t arms, const JointVector& q) const;

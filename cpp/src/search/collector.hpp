@@ -112,6 +112,10 @@ class Collector : public SearchState {
   [[nodiscard]] bool ranks_by_move() const { return !aim_.until_complete && nearest_to_; }
   /// Whether nothing but the nearest is wanted, and nothing may refuse it.
   [[nodiscard]] bool wants_nearest() const { return ranks_by_move() && !screens_answers(request_); }
+  /// To what then; else null.
+  [[nodiscard]] const JointVector* only_nearest_to() const {
+    return wants_nearest() ? &nearest_to_->from : nullptr;
+  }
   /// Whether nothing is wanted but the nearest of those that a scene lets through.
   [[nodiscard]] bool wants_nearest_free() const {
     return ranks_by_move() && request_.scene && !request_.exact && !request_.filter;

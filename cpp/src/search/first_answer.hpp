@@ -57,6 +57,8 @@ class FirstAnswer : public SearchState {
   [[nodiscard]] bool wants_more() const { return false; }
   void look_for_partners(bool /*look*/) {}
   void set_all_branches_tried() {}
+  void settle(bool /*is_settled*/) {}
+  [[nodiscard]] const JointVector* only_nearest_to() const { return nullptr; }
 
  private:
   bool wraps_;

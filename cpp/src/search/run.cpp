@@ -105,8 +105,12 @@ Proof search_in_lanes(const Parts& parts) {
   lanes.refiner.set_target(Y, goal.target());
   Enumeration* branches = lanes.branches_of(goal.task());
   if (branches != nullptr && parts.request.database_seeds) {
+    // What the task does not feel stays where the nearest is wanted to.
+    const JointVector* near_to = parts.answers.only_nearest_to();
+    branches->hold_free_joints(near_to);
     RowSeeds none(nullptr, parts.work);
     const auto explored = explore_branches(parts, *branches, Proof::closed_form, none, given, Y);
+    parts.answers.settle(near_to != nullptr && explored.is_done && !goal.is_full_pose());
     if (explored.is_done) return explored.proof;
   }
   if (goal.is_full_pose()) {

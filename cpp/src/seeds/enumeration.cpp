@@ -37,6 +37,12 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
   has_all_ = is_nominal && !has_families_;
 }
 
+void Enumeration::hold_free_joints(const JointVector* q) {
+  // What keeps to a sum is not told joint by joint.
+  held_ = model_.joints.sums.empty() ? q : nullptr;
+  has_families_ = chain_.has_families() && held_ == nullptr;
+}
+
 void Enumeration::solve(const Pose& Y) {
   chain_.set_target(Y, pack_);
   kernels_.solve_branches(chain_.form, pack_);
@@ -56,7 +62,9 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
 void Enumeration::copy_joints(int lane, double* q) const {
   chain_.copy_joints(pack_.q, lane, q);
   for (int j = 0; j < model_.dof; ++j) {
-    if (!chain_.turns_freely(j) || model_.joints.type(j) == JointType::continuous) continue;
+    if (!chain_.turns_freely(j)) continue;
+    if (held_ != nullptr) q[j] = (*held_)[j];
+    if (model_.joints.type(j) == JointType::continuous) continue;
     q[j] = std::clamp(q[j], model_.joints.lower[j], model_.joints.upper[j]);
   }
   model_.joints.wrap_sums(q);

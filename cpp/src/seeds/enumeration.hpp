@@ -19,6 +19,9 @@ class Enumeration final : public BranchList {
               double position_tolerance, double rotation_tolerance,
               const lanes::LaneKernels& kernels);
 
+  /// From now on, joints of which the angle does not matter stay as in q, inside the limits, so that
+  /// each branch is but the one solution that is nearest to it; null: they are anywhere.
+  void hold_free_joints(const JointVector* q);
   /// Of the task that the chain was completed for. Where not all are wanted, branches inside the
   /// limits are not looked at any closer: one of them will do.
   void find(const Pose& Y, bool wants_all) override;
@@ -52,6 +55,7 @@ class Enumeration final : public BranchList {
   lanes::BranchPack pack_ = all_branches();
   lanes::Regularity regularity_{};
   bool is_measured_ = false;  ///< these, of the last find()
+  const JointVector* held_ = nullptr;
 };
 
 /// Whether a lane that solve_branches solved has no branch inside the limits, or none at all, as

@@ -207,6 +207,22 @@ def test_an_infinite_cost_refuses(made, name) -> None:
     assert math.isnan(never.cost)
 
 
+@pytest.mark.parametrize("name", ["ur5e", "irb120"])
+def test_the_nearest_spin_leaves_the_last_joint(made, name: str) -> None:
+    """The task does not feel its angle, so that each branch has one nearest answer."""
+    solver = made.solver(name)
+    robot, task = solver.robot, iksel.Task.free_spin("z")
+    q, starts = (robot.random_configurations(100, seed=seed) for seed in (1, 2))
+    for known, start in zip(q, starts, strict=True):
+        pose = robot.fk(known)
+        near = solver.solve(pose, task=task, near=start)
+        others = solver.solve_all(pose, task=task, near=start, max=256)
+        assert near
+        assert near.move <= others[0].move + 1e-6
+        assert near.move <= np.linalg.norm(known - start) + 1e-6
+        assert near.q[-1] == pytest.approx(start[-1], abs=1e-9)
+
+
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "xarm7", "fr3"])
 @pytest.mark.parametrize("objective", ["limits", "manipulability"])
 def test_no_solution_of_seven_joints_is_better(made, name: str, objective: str) -> None:

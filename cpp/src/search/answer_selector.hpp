@@ -40,6 +40,12 @@ class AnswerSelector {
   [[nodiscard]] int steps() const { return steps_; }
 
  private:
+  /// Whether the nearest is wanted of a task that leaves axes free.
+  [[nodiscard]] bool is_nearest_of_task() const {
+    return nearest_to_ && goal_.tips() == nullptr && !goal_.is_full_pose();
+  }
+  /// Of a redundant goal, so many of the best are brought to a least cost.
+  [[nodiscard]] std::size_t descents_of_redundant(const Collector& search) const;
   struct Ranked {
     double cost;
     std::size_t index;

@@ -125,3 +125,27 @@ def test_few_candidates_do_not_make_it_too_fast(build) -> None:
                 times = (speeds / robot.velocity_limit).max()
                 assert times <= dt * (1 + 1e-9), (seed, candidates)
                 dt = share * times
+
+
+def in_time(solver, poses, begin, dt, **options):
+    """Whether there is a path, whose joints are not faster than they can be."""
+    path = solver.solve_path(poses, start=begin, dt=dt, **options)
+    if not path:
+        return False
+    np.testing.assert_allclose(solver.robot.fk(path.q), poses, rtol=0, atol=1e-5)
+    steps = np.abs(np.diff(path.q, axis=0, prepend=begin[None]))
+    assert (steps <= solver.robot.velocity_limit * dt * (1 + 1e-8)).all()
+    return True
+
+
+@pytest.mark.parametrize("name", ["panda", "xarm7"])
+def test_the_first_waypoint_is_reached_in_time(made, name) -> None:
+    """Where the nearest answer takes too long, another on the self-motion does not."""
+    solver = made.solver(name)
+    robot = solver.robot
+    failed = 0
+    for begin, end in robot.random_configurations(100, seed=SEED).reshape(50, 2, -1):
+        q = begin + 0.03 * (end - begin) / np.abs(end - begin).max()
+        dt = 1.05 * np.max(np.abs(q - begin) / robot.velocity_limit)
+        failed += not in_time(solver, robot.fk(q[None]), begin, dt)
+    assert failed == 0, f"seed {SEED}"

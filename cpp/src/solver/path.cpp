@@ -53,6 +53,11 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   search.screen(layer);
   const bool kept = !layer.empty();
   search.connect_best(before, layer);
+  if (kept && layer.empty() && goal.is_redundant()) {
+    search.add_in_time(goal, *before, layer);
+    search.screen(layer);
+    search.connect_best(before, layer);
+  }
   return kept                                   ? Status::too_fast
          : any                                  ? search.refusal()
          : collector.status() == Status::solved ? Status::not_converged

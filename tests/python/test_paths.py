@@ -149,3 +149,22 @@ def test_the_first_waypoint_is_reached_in_time(made, name) -> None:
         dt = 1.05 * np.max(np.abs(q - begin) / robot.velocity_limit)
         failed += not in_time(solver, robot.fk(q[None]), begin, dt)
     assert failed == 0, f"seed {SEED}"
+
+
+def test_a_filter_that_changes_its_mind_makes_no_path_too_fast(made) -> None:
+    """What the path passed may be refused while it is made shorter: then it stays."""
+    solver = made.solver("panda")
+    robot = solver.robot
+    begin, end = robot.random_configurations(2, seed=1)
+    q = begin + 0.4 * np.linspace(0, 1, 12)[:, None] * (end - begin)
+    dt = 1.3 * np.max(np.abs(np.diff(q, axis=0)) / robot.velocity_limit)
+    solved = 0
+    for kind in range(18, 34):
+        rng = np.random.default_rng(kind)
+        times = itertools.count()
+
+        def keep(asked, times=times, kind=kind, rng=rng):
+            return (next(times) < kind) | (rng.random(len(asked)) < 0.5)
+
+        solved += in_time(solver, robot.fk(q[1:]), begin, dt, filter=keep)
+    assert solved > 0

@@ -184,7 +184,8 @@ class PathPlan {
         add(result.q[w], layer);
         add_next(halfway(result.q, w), w, layer);
         search_.connect(before(w, layers), layer, makes_up);
-        // What the path passed is in it: none is empty.
+        // What the path passed is in it, unless the filter has changed its mind.
+        if (layer.empty()) return;
         layers.push_back(std::move(layer));
       }
       PathResult other;

@@ -138,6 +138,26 @@ def in_time(solver, poses, begin, dt, **options):
     return True
 
 
+@pytest.mark.parametrize("name", ["ur5e", "irb120"])
+@pytest.mark.parametrize(("stays", "spare"), [(0, 1.05), (5, 1.5)])
+def test_a_motion_through_a_singular_wrist_is_followed_in_time(
+    made, name, stays, spare
+) -> None:
+    """At the waypoint where two axes line up, any of a family may be found."""
+    solver = made.solver(name)
+    robot = solver.robot
+    wrist = np.linspace(-0.2, 0.2, 41)
+    wrist[20 - stays : 21 + stays] = 0
+    failed = 0
+    for seed in range(20):
+        a, b = robot.random_configurations(2, seed=seed)
+        q = a + 0.4 * np.linspace(0, 1, 41)[:, None] * (b - a)
+        q[:, 4] = wrist
+        dt = spare * np.max(np.abs(np.diff(q, axis=0)) / robot.velocity_limit)
+        failed += not in_time(solver, robot.fk(q[1:]), q[0], dt)
+    assert failed == 0
+
+
 @pytest.mark.parametrize("name", ["panda", "xarm7"])
 def test_the_first_waypoint_is_reached_in_time(made, name) -> None:
     """Where the nearest answer takes too long, another on the self-motion does not."""

@@ -188,3 +188,14 @@ def test_a_filter_that_changes_its_mind_makes_no_path_too_fast(made) -> None:
 
         solved += in_time(solver, robot.fk(q[1:]), begin, dt, filter=keep)
     assert solved > 0
+
+
+@pytest.mark.parametrize("largest", [1e300, 1e101, 1e-101])
+def test_weights_whose_squares_are_no_numbers_are_refused(made, largest) -> None:
+    solver = made.solver("panda")
+    poses = solver.robot.fk(np.full((3, 7), 0.5) * [1, -1, 1, -3, 1, 3, 1])
+    weights = np.r_[largest, np.zeros(6)]
+    with pytest.raises(iksel.InvalidArgumentError, match=r"^weights\[0\]"):
+        solver.solve_path(poses, weights=weights)
+    with pytest.raises(iksel.InvalidArgumentError, match=r"^weights\[0\]"):
+        solver.solve(poses[0], near=np.zeros(7), weights=weights)

@@ -125,3 +125,77 @@ def test_few_candidates_do_not_make_it_too_fast(build) -> None:
                 times = (speeds / robot.velocity_limit).max()
                 assert times <= dt * (1 + 1e-9), (seed, candidates)
                 dt = share * times
+
+
+def in_time(solver, poses, begin, dt, **options):
+    """Whether there is a path, whose joints are not faster than they can be."""
+    path = solver.solve_path(poses, start=begin, dt=dt, **options)
+    if not path:
+        return False
+    np.testing.assert_allclose(solver.robot.fk(path.q), poses, rtol=0, atol=1e-5)
+    steps = np.abs(np.diff(path.q, axis=0, prepend=begin[None]))
+    assert (steps <= solver.robot.velocity_limit * dt * (1 + 1e-8)).all()
+    return True
+
+
+@pytest.mark.parametrize("name", ["ur5e", "irb120"])
+@pytest.mark.parametrize(("stays", "spare"), [(0, 1.05), (5, 1.5)])
+def test_a_motion_through_a_singular_wrist_is_followed_in_time(
+    made, name, stays, spare
+) -> None:
+    """At the waypoint where two axes line up, any of a family may be found."""
+    solver = made.solver(name)
+    robot = solver.robot
+    wrist = np.linspace(-0.2, 0.2, 41)
+    wrist[20 - stays : 21 + stays] = 0
+    failed = 0
+    for seed in range(20):
+        a, b = robot.random_configurations(2, seed=seed)
+        q = a + 0.4 * np.linspace(0, 1, 41)[:, None] * (b - a)
+        q[:, 4] = wrist
+        dt = spare * np.max(np.abs(np.diff(q, axis=0)) / robot.velocity_limit)
+        failed += not in_time(solver, robot.fk(q[1:]), q[0], dt)
+    assert failed == 0
+
+
+@pytest.mark.parametrize("name", ["panda", "xarm7"])
+def test_the_first_waypoint_is_reached_in_time(made, name) -> None:
+    """Where the nearest answer takes too long, another on the self-motion does not."""
+    solver = made.solver(name)
+    robot = solver.robot
+    failed = 0
+    for begin, end in robot.random_configurations(100, seed=SEED).reshape(50, 2, -1):
+        q = begin + 0.03 * (end - begin) / np.abs(end - begin).max()
+        dt = 1.05 * np.max(np.abs(q - begin) / robot.velocity_limit)
+        failed += not in_time(solver, robot.fk(q[None]), begin, dt)
+    assert failed == 0, f"seed {SEED}"
+
+
+def test_a_filter_that_changes_its_mind_makes_no_path_too_fast(made) -> None:
+    """What the path passed may be refused while it is made shorter: then it stays."""
+    solver = made.solver("panda")
+    robot = solver.robot
+    begin, end = robot.random_configurations(2, seed=1)
+    q = begin + 0.4 * np.linspace(0, 1, 12)[:, None] * (end - begin)
+    dt = 1.3 * np.max(np.abs(np.diff(q, axis=0)) / robot.velocity_limit)
+    solved = 0
+    for kind in range(18, 34):
+        rng = np.random.default_rng(kind)
+        times = itertools.count()
+
+        def keep(asked, times=times, kind=kind, rng=rng):
+            return (next(times) < kind) | (rng.random(len(asked)) < 0.5)
+
+        solved += in_time(solver, robot.fk(q[1:]), begin, dt, filter=keep)
+    assert solved > 0
+
+
+@pytest.mark.parametrize("largest", [1e300, 1e101, 1e-101])
+def test_weights_whose_squares_are_no_numbers_are_refused(made, largest) -> None:
+    solver = made.solver("panda")
+    poses = solver.robot.fk(np.full((3, 7), 0.5) * [1, -1, 1, -3, 1, 3, 1])
+    weights = np.r_[largest, np.zeros(6)]
+    with pytest.raises(iksel.InvalidArgumentError, match=r"^weights\[0\]"):
+        solver.solve_path(poses, weights=weights)
+    with pytest.raises(iksel.InvalidArgumentError, match=r"^weights\[0\]"):
+        solver.solve(poses[0], near=np.zeros(7), weights=weights)

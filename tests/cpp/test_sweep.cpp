@@ -182,7 +182,7 @@ TEST_P(Sweeps, BranchesAreRatedAsTheyAreSolved) {
       branches.solve_all(places.value(place));
       for (int branch = 0; branch < iksel::lanes::kWidth; ++branch) {
         // Beside where it ends, rounding decides.
-        if (branches.least(branch) < 1e-6) continue;
+        if (branches.point(branch).least < 1e-6) continue;
         const double off = branches.off(branch);
         const double rated =
             rows[static_cast<std::size_t>(place)][static_cast<std::size_t>(branch)];
@@ -240,32 +240,32 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
     branches.measure([&](int lane) { return places.value(lane); }, kBound, most, rows);
     for (int place = 0; place < places.count; ++place) {
       branches.solve_all(places.value(place));
-      const iksel::lanes::MovePack& moves = branches.moves();
       for (int branch = 0; branch < kCount; ++branch) {
+        const iksel::BranchPoint point = branches.point(branch);
         // Beside where it ends, rounding decides.
-        if (std::abs(branches.least(branch)) < 1e-6) continue;
+        if (std::abs(point.least) < 1e-6) continue;
         const iksel::lanes::BranchRow& row = rows[branch];
-        if (row.least[place] < 0 || branches.least(branch) < 0) {
-          EXPECT_LT(branches.least(branch), 0);
+        if (row.least[place] < 0 || point.least < 0) {
+          EXPECT_LT(point.least, 0);
           continue;
         }
         if (row.moves.inside[place] >= iksel::lanes::kFarAway) {
-          EXPECT_TRUE(moves.off[branch] > kBound || moves.loose[branch] > most);
-          EXPECT_LT(row.moves.off[place], moves.off[branch] + 1e-9);
-          EXPECT_LT(row.moves.loose[place], moves.loose[branch] + 1e-9);
+          EXPECT_TRUE(point.off > kBound || point.loose > most);
+          EXPECT_LT(row.moves.off[place], point.off + 1e-9);
+          EXPECT_LT(row.moves.loose[place], point.loose + 1e-9);
           continue;
         }
-        EXPECT_NEAR(row.least[place], branches.least(branch), 1e-9);
+        EXPECT_NEAR(row.least[place], point.least, 1e-9);
         // What joints that swing beside are away is counted less.
-        EXPECT_LT(row.moves.off[place], moves.off[branch] + 1e-9);
-        EXPECT_LT(row.moves.loose[place], moves.loose[branch] + 1e-9);
+        EXPECT_LT(row.moves.off[place], point.off + 1e-9);
+        EXPECT_LT(row.moves.loose[place], point.loose + 1e-9);
         if (!may_swing(robot(), branches, branch)) {
-          EXPECT_GT(row.moves.off[place], moves.off[branch] - 1e-9);
-          EXPECT_GT(row.moves.loose[place], moves.loose[branch] - 1e-9);
+          EXPECT_GT(row.moves.off[place], point.off - 1e-9);
+          EXPECT_GT(row.moves.loose[place], point.loose - 1e-9);
           ++whole;
         }
-        if (moves.off[branch] > 0) continue;
-        EXPECT_NEAR(row.moves.inside[place], moves.inside[branch], 1e-9);
+        if (point.off > 0) continue;
+        EXPECT_NEAR(row.moves.inside[place], point.inside, 1e-9);
         JointVector one(7), other(7);
         branches.copy_joints(branch, one.data());
         branches.copy_joints(places.value(place), row.q, place, other.data());

@@ -151,6 +151,21 @@ def test_in_a_scene_it_is_free():
     assert 0 < none < given
 
 
+def test_an_answer_that_the_search_had_missed_has_a_cost(solver):
+    """One iteration is too few for the search, not for what looks for the closest."""
+    hasty = iksel.Solver(solver.robot, iksel.SolverOptions(max_iterations=1))
+    q = solver.robot.random_configurations(1, seed=3)[0]
+    wish = {
+        "seeds": [q + 0.1],
+        "database_seeds": False,
+        "objective": iksel.Objective.far_from_limits(),
+    }
+    assert not hasty.solve(solver.robot.fk(q), **wish)
+    found = hasty.solve(solver.robot.fk(q), closest=True, **wish)
+    assert found
+    assert np.isfinite(found.cost)
+
+
 def missing(solver, pose, q):
     """What is missing by the default weights."""
     position, rotation = iksel.pose_error(pose, solver.robot.fk(q))

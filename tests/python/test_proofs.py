@@ -147,3 +147,120 @@ def test_more_images_than_are_looked_at_are_not_proven_away() -> None:
     assert not solver.solve_all(
         wide.fk(q), filter=lambda given: given[:, 0] > 300
     ).proven
+
+
+def ur5(limits, off: float = 0.0, seed: int = 0) -> iksel.Robot:
+    """A UR5 whose axes lie off by up to so much [rad, 0.3 m]."""
+    random = np.random.default_rng(seed)
+    return iksel.Robot.from_dh(
+        [0, -0.425, -0.39225, 0, 0, 0] + 0.3 * off * random.uniform(-1, 1, 6),
+        np.array([1, 0, 0, 1, -1, 0]) * np.pi / 2 + off * random.uniform(-1, 1, 6),
+        [0.089159, 0, 0, 0.10915, 0.09465, 0.0823],
+        lower=limits[0],
+        upper=limits[1],
+    )
+
+
+def is_missed(found: iksel.Solutions, q: npt.NDArray[np.float64]) -> bool:
+    """Whether q, or a whole turn of it, is not among them."""
+    apart = np.abs((np.array(found.q).reshape(-1, 6) - q + np.pi) % (2 * np.pi) - np.pi)
+    return not (apart.max(axis=1) < 0.02).any()
+
+
+def test_a_last_joint_that_may_turn_as_it_likes_is_not_held_to_its_limits() -> None:
+    """It is just outside where the target is from, and another joint by 1e-9."""
+    random = np.random.default_rng(SEED)
+    for _ in range(40):
+        q = random.uniform(-2, 2, 6)
+        limits = np.array([q - 0.3, q + 0.3])
+        limits[1, 1] = q[1] - 1e-9
+        limits[:, 5] = 0.5, 3
+        robot = ur5(limits)
+        q[5] = 0.4995
+        result = iksel.Solver(robot).solve(robot.fk(q), task=iksel.Task.free_spin("z"))
+        assert result, f"{SEED}: {q!r}, {result.proof}"
+
+
+@pytest.mark.parametrize("joints", [[0, 5], [0, 3, 5]])
+def test_several_joints_at_limits_that_all_but_meet_are_not_proven_away(joints) -> None:
+    """Of an arm that is but nearly regular each may be on the wrong side of them."""
+    random = np.random.default_rng(SEED)
+    for number in range(10):
+        robot = ur5([[-3.14159] * 6, [3.14159] * 6], off=3e-5, seed=number)
+        assert "nearly" in robot.structure.description
+        solver = iksel.Solver(robot)
+        for _ in range(10):
+            q = random.uniform(-2.5, 2.5, 6)
+            q[joints] = random.choice([-1, 1], len(joints)) * 3.14159
+            assert solver.solve(robot.fk(q)), f"{SEED}: {q!r}"
+            assert not is_missed(solver.solve_all(robot.fk(q)), q), f"{SEED}: {q!r}"
+
+
+def test_branches_that_were_given_up_are_not_proven_away() -> None:
+    """One iteration does not bring all of a nearly regular arm to such tolerances."""
+    robot = ur5([[-3] * 6, [3] * 6], off=1e-5)
+    options = iksel.SolverOptions()
+    options.position_tolerance = options.rotation_tolerance = 1e-9
+    options.max_iterations = 1
+    hasty = iksel.Solver(robot, options)
+    for q in robot.random_configurations(100, SEED):
+        pose = robot.fk(q)
+        found = hasty.solve_all(pose)
+        assert not (is_missed(found, q) and found.proven), f"{SEED}: {q!r}"
+        only = lambda given, q=q: np.abs(given - q).max(axis=1) < 1e-3  # noqa: E731
+        assert hasty.solve(pose, filter=only).proof in (
+            iksel.Proof.none,
+            iksel.Proof.answer,
+        )
+
+
+def test_an_image_that_is_no_answer_does_not_take_the_place_of_one_that_is() -> None:
+    """It lies 5e-7 outside a limit, and is held to it, where it is off by as much."""
+    q = np.array([0.3, -1.0, 1.2, 0.4, 0.9, 0.5])
+    limits = np.array([[-3.0] * 6, [3.0] * 6])
+    limits[:, 0] = q[0] - 5e-7, q[0] - 5e-7 + 2 * np.pi
+    robot = ur5(limits)
+    options = iksel.SolverOptions()
+    options.position_tolerance = options.rotation_tolerance = 1e-8
+    solver = iksel.Solver(robot, options)
+    near = q + (limits[1, 0] - q[0]) * np.eye(6)[0]
+    for wish in (
+        {"near": near, "filter": lambda given: np.ones(len(given), bool)},
+        {"objective": lambda given: abs(given[0] - near[0])},
+    ):
+        assert not is_missed(solver.solve_all(robot.fk(q), **wish), q)
+
+
+def test_turns_of_joints_without_limits_are_not_proven_away() -> None:
+    """Of these, images within half a turn of 0 are looked at."""
+    robot = ur5([[-np.inf] * 6, [np.inf] * 6])
+    solver = iksel.Solver(robot)
+    q = np.array([0.3, -1.0, 1.2, 0.4, 0.9, 0.5])
+    turned = lambda given: np.abs(np.asarray(given)[..., 0]) > 4  # noqa: E731
+    for wish in (
+        {"filter": turned},
+        {"objective": lambda given: 0.0 if turned(given) else np.inf},
+    ):
+        assert not solver.solve_all(robot.fk(q), **wish).proven
+    all_pass = {"filter": lambda given: np.ones(len(given), bool)}
+    assert solver.solve_all(robot.fk(q), **all_pass).proven
+
+
+def test_a_triple_root_where_it_is_looked_is_found() -> None:
+    """Rounding had it beyond the sample from both sides: 62 of 2,000 were lost."""
+    h = np.pi / 2
+    limits = np.array([3.5, 3.1410926535897933, 3.1410926535897933, 0.25, 0, 6.5])
+    limits[4] = np.pi - 5e-10
+    robot = iksel.Robot.from_dh(
+        [0, 0.3171278694622538, 0, 0, 0, 0],
+        [h, 2 * h, h, h, -h, 0],
+        [0.18322984794, 0, 0.29878761279, 0.13681476131, 0.1, 0.44217542637],
+        lower=-limits,
+        upper=limits,
+    )
+    solver = iksel.Solver(robot)
+    random = np.random.default_rng(SEED)
+    for _ in range(300):
+        q = random.uniform(-limits, limits) * [1, 1, 1, 0, 0, 1]
+        q[4] = -limits[4]
+        assert not is_missed(solver.solve_all(robot.fk(q)), q), f"{SEED}: {q!r}"

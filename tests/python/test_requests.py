@@ -81,6 +81,17 @@ def test_filter_gets_many_and_decides(made, cases) -> None:
     assert {dof for _, dof in shapes} == {6}
 
 
+def test_filter_is_asked_about_both_of_what_almost_meets(made) -> None:
+    """Beside a fold, where two solutions differ by a thousandth of a radian."""
+    solver = made.solver("ur3")
+    elbow = 2
+    random = np.random.default_rng(SEED)
+    for q in 0.3 * solver.robot.random_configurations(60, seed=SEED):
+        q[elbow] = random.choice([-1, 1]) * 10 ** random.uniform(-3.6, -3)
+        side = lambda given, q=q: given[:, elbow] * q[elbow] > 0  # noqa: E731
+        assert solver.solve(solver.robot.fk(q), filter=side), f"{q!r}"
+
+
 def test_a_filter_may_give_a_list_and_is_never_asked_about_none(made, cases) -> None:
     solver = made.solver("irb120")
     counts = []

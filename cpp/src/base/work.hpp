@@ -52,6 +52,7 @@ class Work {
 
   int attempts = 0;  ///< without guesses
   int iterations = 0;
+  int arrivals = 0;  ///< seeds that led to the goal, whatever became of it there
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -126,8 +126,10 @@ WorkspacePool::WorkspacePool(const Robot& robot, const Robot& nominal, const Dat
                              const SolverOptions& options)
     : shared_(robot, nominal, database, options) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  for (std::size_t i = 0; i < std::min(cores, kPlaces); ++i)
-    idle_[i] = std::make_unique<Workspace>(shared_).release();
+  // All of them first: should there be no memory for one, the others go.
+  std::vector<std::unique_ptr<Workspace>> made(std::min(cores, kPlaces));
+  for (auto& each : made) each = std::make_unique<Workspace>(shared_);
+  for (std::size_t i = 0; i < made.size(); ++i) idle_[i] = made[i].release();
 }
 
 WorkspacePool::~WorkspacePool() {

@@ -26,15 +26,16 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
   EnumeratedSeeds enumerated(branches, Y, answers.wants_more(), parts.work);
   answers.look_for_partners(false);
   if (parts.refine(Width::narrow, near, given, enumerated)) return Explored::done();
+  const bool has_arrived = enumerated.has_arrived();
   const bool is_satisfied_inside =
       !answers.has_any() &&
       parts.move_inside(branches.size(), [&](int i) { return branches.q(i); });
   if (is_satisfied_inside) return Explored::done();
-  // Branches of which none could be refined to the tolerances prove nothing.
+  // Branches that could not be refined to the tolerances prove nothing.
   const bool is_empty = branches.size() == 0;
   const bool is_certain = enumerated.was_tried() && branches.is_certain();
   const bool are_known = is_certain
-                             ? is_empty || answers.has_any()
+                             ? is_empty || (answers.has_any() && has_arrived)
                              : enumerated.was_tried() && branches.is_certain_but_for_limits();
   const bool is_through = are_known && (is_empty || !branches.has_families());
   // Of full poses, as the roots are.

@@ -150,6 +150,16 @@ Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
   if (!has_any) return Explored::doubtful();
   refine_samples(parts, /*are_answers=*/false);
   if (!q.empty()) return Explored::done();
+  // One may be known all the same, or lie between the points.
+  const auto knows_free = [&] {
+    bool free = false;
+    for (std::size_t i = 0; i < parts.answers.count() && !free; ++i) {
+      parts.request.scene->find_free(parts.answers.solution(i), 1, &free);
+    }
+    return free;
+  };
+  FreeSamples samples(*lanes.sweep, *parts.request.scene, Y, lanes.samples, parts.work, kMost);
+  if (knows_free() || parts.refine(Width::wide, samples) || knows_free()) return Explored::done();
   parts.answers.refuse();
   return Explored::done(Proof::sweep);
 }

@@ -49,6 +49,7 @@ bool search(Refiner& refiner, Seeds& seeds, Answers& answers, Work& work) {
           JointVector q = refiner.q(lane);
           const Verdict verdict = answers.offer(lane, q);
           if (verdict == Verdict::stop) return true;
+          work.arrivals += verdict == Verdict::next ? 1 : 0;
           finished = verdict == Verdict::refine ? refiner.stays(lane) || finished : true;
         }
         if (finished) refill(lane);

@@ -81,7 +81,7 @@ Explored explore_free_curve(const FirstSearch& parts, const Pose& Y) {
   if (parts.answers.is_never_free()) {
     if (!parts.answers.has_any() && !lanes.sweep->find(Y)) return Explored::doubtful();
     parts.answers.refuse();
-    return Explored::done(Proof::target);
+    return Explored::done();
   }
   FreeSamples samples(*lanes.sweep, *parts.goal.scene(), Y, lanes.samples, parts.work);
   if (parts.refine(Width::narrow, samples)) return Explored::done();

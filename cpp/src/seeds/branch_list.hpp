@@ -59,6 +59,7 @@ class EnumeratedSeeds : public RowSeeds {
     if (done_ || !work_.has_left()) return false;
     done_ = true;
     branches_.find(Y_, wants_all_);
+    before_ = work_.arrivals;
     give(branches_.q(0), static_cast<std::size_t>(branches_.size()), kPoseJoints,
          branches_.are_answers());
     work_.lap(&StageTimes::query);
@@ -67,12 +68,15 @@ class EnumeratedSeeds : public RowSeeds {
 
   /// Whether each branch was tried.
   [[nodiscard]] bool was_tried() const { return done_ && is_through(); }
+  /// Whether each led to the goal, if all were tried last.
+  [[nodiscard]] bool has_arrived() const { return work_.arrivals - before_ == branches_.size(); }
 
  private:
   BranchList& branches_;
   const Pose& Y_;
   bool wants_all_;
   bool done_ = false;
+  int before_ = 0;  ///< arrivals
 };
 
 }  // namespace iksel

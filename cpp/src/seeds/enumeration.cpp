@@ -95,21 +95,30 @@ void Enumeration::take_turned(const Pose& Y, int lane) {
   Joints q{};
   copy_joints(lane, q.data());
   const JointSpace& joints = model_.joints;
+  // Any of the joints may be on the wrong side, and others with it.
+  std::array<Joints, 1U << kPoseJoints> ways{q};
+  std::size_t count = 1;
   for (int j = 0; j < model_.dof; ++j) {
     const auto i = static_cast<std::size_t>(j);
     if (joints.is_slide(j) || joints.is_periodic(j)) continue;
     const double turned = q[i] + std::copysign(kTwoPi, joints.middle()[j] - q[i]);
     if (std::max(joints.lower[j] - turned, turned - joints.upper[j]) > kFirstOrder) continue;
-    next() = q;
-    next()[i] = turned;
-    if (is_beyond(Y, next())) continue;
+    std::copy_n(ways.begin(), count, ways.begin() + count);
+    for (std::size_t k = count; k < 2 * count; ++k) ways[k][i] = turned;
+    count *= 2;
+  }
+  for (std::size_t k = 1; k < count; ++k) {
+    if (is_beyond(Y, ways[k])) continue;
     certain_ = false;
+    if (size_ == kRoom) return;
+    next() = ways[k];
     ++size_;
   }
 }
 
 bool Enumeration::is_beyond(const Pose& Y, const Joints& q) const {
-  if (chain_.is_completed()) return false;
+  // It is known of whole poses only.
+  if (chain_.is_completed() || has_families_) return false;
   const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
   return is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q.data(), 6),
                           position_tolerance_, rotation_tolerance_);

@@ -19,8 +19,8 @@ class Enumeration final : public BranchList {
               double position_tolerance, double rotation_tolerance,
               const lanes::LaneKernels& kernels);
 
-  /// From now on, joints of which the angle does not matter stay as in q, inside the limits, so that
-  /// each branch is but the one solution that is nearest to it; null: they are anywhere.
+  /// From now on, joints of which the angle does not matter stay as in q, inside the limits, so
+  /// that each branch is but the one solution that is nearest to it; null: they are anywhere.
   void hold_free_joints(const JointVector* q);
   /// Of the task that the chain was completed for. Where not all are wanted, branches inside the
   /// limits are not looked at any closer: one of them will do.
@@ -38,8 +38,8 @@ class Enumeration final : public BranchList {
  private:
   /// Takes a lane's branch if it may be one.
   void take(const Pose& Y, int lane, bool wants_all);
-  /// Takes where it may be at the other limit of a joint whose limits all but meet round the turn:
-  /// a form that is but nearly the arm's may have it on the wrong side of them.
+  /// Takes where it may be at the other limit of joints whose limits all but meet round the turn: a
+  /// form that is but nearly the arm's may have it on the wrong side of them.
   void take_turned(const Pose& Y, int lane);
   /// Whether the arm's solution beside q is certainly no answer (beyond_limits.hpp).
   [[nodiscard]] bool is_beyond(const Pose& Y, const Joints& q) const;

@@ -46,7 +46,13 @@ void RootFinder::find(const Residual& residual, double faint) {
     if (counts[i] == 1) {
       add_bracket(left, step_, values_.data() + kBefore + i);
     } else {
+      const std::size_t before = size_ + brackets_size_;
+      const double* ends = values_.data() + kBefore + i;
       look_closer(residual, left, step_, 1);
+      // A triple root at an end may by rounding be beyond it as seen from both sides.
+      if (size_ + brackets_size_ == before && (ends[0] < 0) != (ends[1] < 0)) {
+        add({std::abs(ends[0]) < std::abs(ends[1]) ? left : left + step_, true});
+      }
     }
   }
   polish(residual);
@@ -58,11 +64,11 @@ void RootFinder::add_faint(double most) {
   int faint = 0;
   for (int i = 0; i < kCells; ++i) faint += std::abs(values_[kBefore + i]) <= most ? 1 : 0;
   if (faint == 0) return;
-  for (std::size_t i = kBefore; i < kBefore + kCells && size_ < kMost; ++i) {
+  for (std::size_t i = kBefore; i < kBefore + kCells; ++i) {
     const double here = std::abs(values_[i]);
     if (here > most || here > std::abs(values_[i - 1]) || here > std::abs(values_[i + 1])) continue;
     const bool crosses = values_[i - 1] * values_[i] <= 0 || values_[i] * values_[i + 1] <= 0;
-    if (!crosses) roots_[size_++] = {angles_[i], true, 0, true};
+    if (!crosses) add({angles_[i], true, 0, true});
   }
 }
 
@@ -96,7 +102,7 @@ void RootFinder::look_closer(const Residual& residual, double left, double lengt
     } else if (depth < kDeepest) {
       look_closer(residual, here, step, depth + 1);
     } else {
-      add(here + step / 2, true);
+      add({here + step / 2, true});
     }
   }
   // Where it turns above 0 or below: of the parabola through three values, the one in the middle
@@ -108,7 +114,8 @@ void RootFinder::look_closer(const Residual& residual, double left, double lengt
       const double least = values[i] - 0.5 * slope * slope / bend;
       const double apart = vague_ / step;
       if (std::abs(least) <= 0.5 * std::abs(bend) * apart * apart) {
-        add(angles[i] - step * slope / bend, true, step * std::sqrt(2 * std::abs(least / bend)));
+        const double from_least = step * std::sqrt(2 * std::abs(least / bend));
+        add({angles[i] - step * slope / bend, true, from_least});
       }
     }
   }
@@ -122,12 +129,12 @@ void RootFinder::add_bracket(double left, double length, const double* value) {
   brackets_[brackets_size_++] = {left, left + length, value[0], value[1]};
 }
 
-void RootFinder::add(double angle, bool is_vague, double apart) {
+void RootFinder::add(const Root& root) {
   if (size_ == kMost) {
     is_complete_ = false;
     return;
   }
-  roots_[size_++] = {angle, is_vague, apart};
+  roots_[size_++] = root;
 }
 
 void RootFinder::polish(const Residual& residual) {
@@ -146,7 +153,7 @@ void RootFinder::polish(const Residual& residual) {
         is_there = is_there && brackets_[first + i].is_narrow(precision_);
       }
     }
-    for (std::size_t i = 0; i < n; ++i) add(brackets_[first + i].best(), false);
+    for (std::size_t i = 0; i < n; ++i) add({brackets_[first + i].best(), false});
   }
 }
 

@@ -24,7 +24,7 @@ class RootFinder {
   struct Root {
     double angle;           ///< [rad]
     bool is_vague;          ///< there may be two near to here, or just none
-    double apart;           ///< so far away are these, real or not, if that is known [rad]
+    double apart = 0;       ///< so far away are these, real or not, if that is known [rad]
     bool is_faint = false;  ///< it turns here, hardly different from 0, and that is all
   };
 
@@ -66,7 +66,7 @@ class RootFinder {
   /// around.
   void look_closer(const Residual& residual, double left, double length, int depth);
   void add_bracket(double left, double length, const double* value);
-  void add(double angle, bool is_vague, double apart = 0);
+  void add(const Root& root);
   /// Adds where the residual turns, but hardly differs from 0.
   void add_faint(double most);
   /// Narrows all brackets.

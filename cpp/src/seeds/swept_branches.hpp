@@ -118,10 +118,6 @@ class SweptBranches {
   [[nodiscard]] double off(int lane) const {
     return std::max(last_->beyond[lane], 0.0) + std::sqrt(std::max(-last_->least[lane], 0.0));
   }
-  /// How far all lanes are away, if that is measured.
-  [[nodiscard]] const lanes::MovePack& moves() const { return moves_; }
-  /// Whether there is such a branch at all: below 0 if there is none [mixed units].
-  [[nodiscard]] double least(int lane) const { return last_->least[lane]; }
   /// The value of the swept joint.
   [[nodiscard]] double value(int lane) const { return last_->held[lane] - offset_; }
   /// All seven joint values, by whole turns inside the limits where they can be [rad].

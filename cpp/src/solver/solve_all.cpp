@@ -20,14 +20,13 @@ namespace {
 constexpr std::size_t kChoice = 4;
 
 /// A solution, or one of its periodic images.
-struct Image {
-  JointVector q;
-  double cost;
+struct Image : Result {
+  double rank;           ///< smaller comes first
   std::size_t solution;  ///< of which it is an image
 };
 
 bool cheaper(const Image& a, const Image& b) {
-  if (a.cost != b.cost) return a.cost < b.cost;
+  if (a.rank != b.rank) return a.rank < b.rank;
   return std::lexicographical_compare(a.q.data(), a.q.data() + a.q.size(), b.q.data(),
                                       b.q.data() + b.q.size());
 }
@@ -86,26 +85,38 @@ class SolutionRanking {
 };
 
 /// The solutions found that are free, each at all its images inside the limits or as it is.
-std::vector<Image> images_of(const JointSpace& joints, const SolutionSet& found,
-                             const Screen& screen, bool with_images,
-                             const SolutionRanking& ranking) {
+std::vector<Image> images_of(const Goal& goal, const SolutionSet& found, const Screen& screen,
+                             bool with_images, const SolutionRanking& ranking) {
   std::vector<Image> images;
   images.reserve(found.size());
   const std::unique_ptr<bool[]> free(new bool[found.size() + 1]());
   if (found.size() > 0) screen.find_free(found.q(0), found.size(), free.get());
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!free[i]) continue;
-    const auto add = [&](const JointVector& q) {
-      images.push_back({q, ranking.cost(q), i});
-      return images.size() < kMostImages;
+    const auto add = [&](const Result& answer) {
+      images.push_back({answer, ranking.cost(answer.q), i});
     };
-    if (with_images) {
-      joints.visit_images(found.at(i), add);
-    } else {
-      add(found.at(i));
+    if (!with_images) {
+      add(found.result(i));
+      continue;
     }
+    goal.joints().visit_images(found.at(i), [&](const JointVector& q) {
+      // One that was beside a limit, and is held to it, need not be an answer.
+      Result image;
+      if (goal.check(q, image)) add(image);
+      return images.size() < kMostImages;
+    });
   }
   return images;
+}
+
+/// Of how many solutions these are images, each solution's one after the other.
+std::size_t count_solutions(const std::vector<Image>& images) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    count += i == 0 || images[i].solution != images[i - 1].solution ? 1 : 0;
+  }
+  return count;
 }
 
 /// Of the images of each solution, in order, the first.
@@ -174,12 +185,15 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   // Without, each solution is at its best image already.
   const bool with_images =
       all.whole_turns || request.filter || request.objective.kind == Objective::Kind::custom;
-  std::vector<Image> images = images_of(goal.joints(), found, screen, with_images, ranking);
+  std::vector<Image> images = images_of(goal, found, screen, with_images, ranking);
+  const std::size_t free = count_solutions(images);
   bool are_left_out = images.size() >= kMostImages;
   screen.keep_passed(images, /*by_scene=*/false);
   images.erase(std::remove_if(images.begin(), images.end(),
-                              [](const Image& image) { return std::isinf(image.cost); }),
+                              [](const Image& image) { return std::isinf(image.rank); }),
                images.end());
+  // Of joints without limits there are more images.
+  are_left_out |= !goal.joints().upper.allFinite() && count_solutions(images) < free;
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
   are_left_out |=
@@ -187,15 +201,9 @@ Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());
-  for (const Image& image : images) {
-    Result result;
-    if (!with_images) {
-      result = found.result(image.solution);
-    } else if (!goal.check(image.q, result)) {
-      continue;
-    }
-    if (request.near) result.move = ranking.move(image.q);
-    if (request.objective.is_set()) result.cost = ranking.objective(image.q);
+  for (Result& result : images) {
+    if (request.near) result.move = ranking.move(result.q);
+    if (request.objective.is_set()) result.cost = ranking.objective(result.q);
     result.attempts = solutions.attempts;
     result.iterations = solutions.iterations;
     solutions.all.push_back(result);

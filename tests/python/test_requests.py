@@ -5,11 +5,15 @@ from __future__ import annotations
 
 import math
 import pickle
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 import iksel
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 SEED = 5
 
@@ -377,3 +381,43 @@ def same_branches(found, exact, robot) -> bool:
     return all(any(near(a, b) for b in found) for a in inside) and all(
         any(near(a, b) for b in exact) for a in found
     )
+
+
+def keeps_joint_beside(
+    q: np.ndarray, joint: int, width: float
+) -> Callable[[np.ndarray], np.ndarray]:
+    """A filter that lets a joint be so far from where it is in q [rad]."""
+
+    def is_beside(rows: np.ndarray) -> np.ndarray:
+        return np.abs(rows[:, joint] - q[joint]) < width
+
+    return is_beside
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14"])
+def test_a_filter_sees_more_of_a_self_motion_than_few(made, name: str) -> None:
+    """However few of what it lets through are asked for."""
+    solver = made.solver(name)
+    for known in solver.robot.random_configurations(60, seed=11):
+        keep = keeps_joint_beside(known, joint=2, width=0.3)
+        pose = solver.robot.fk(known)
+        few = solver.solve_all(pose, max=2, filter=keep)
+        assert 0 < len(few) <= 2
+        assert keep(few.q).all()
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14"])
+def test_the_nearest_that_a_filter_lets_through(made, name: str) -> None:
+    """Along the self-motion, where the nearest of all is refused."""
+    solver = made.solver(name)
+    rng = np.random.default_rng(5)
+    longer = 0
+    for known in solver.robot.random_configurations(100, seed=12):
+        near = known + rng.uniform(-0.5, 0.5, 7)
+        joint = int(rng.integers(7))
+        keep = keeps_joint_beside(known, joint, width=0.2)
+        result = solver.solve(solver.robot.fk(known), near=near, filter=keep)
+        assert result
+        assert keep(result.q[None]).all()
+        longer += result.move > np.linalg.norm(known - near) + 0.05
+    assert longer <= 1

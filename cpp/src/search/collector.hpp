@@ -116,9 +116,9 @@ class Collector : public SearchState {
   [[nodiscard]] const JointVector* only_nearest_to() const {
     return wants_nearest() ? &nearest_to_->from : nullptr;
   }
-  /// Whether nothing is wanted but the nearest of those that a scene lets through.
-  [[nodiscard]] bool wants_nearest_free() const {
-    return ranks_by_move() && request_.scene && !request_.exact && !request_.filter;
+  /// Whether nothing is wanted but the nearest of those that a scene and a filter let through.
+  [[nodiscard]] bool wants_nearest_passing() const {
+    return ranks_by_move() && screens_answers(request_) && !request_.exact;
   }
   /// To what, if it wants that.
   [[nodiscard]] const NearestTo& nearest_to() const { return *nearest_to_; }

@@ -136,20 +136,24 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }
 
-/// The free solutions nearest to it.
-Explored explore_nearest_free(const AllSearch& parts, const Pose& Y) {
+/// The solutions nearest to it that pass the screen.
+Explored explore_nearest_passing(const AllSearch& parts, Screen& screen, const Pose& Y) {
   /// So many of them are refined.
   constexpr std::size_t kMost = 16;
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   const std::vector<Curve::Arc>& arcs = lanes.find_arcs(parts.goal.target(), Y, kSpacing);
   std::vector<double>& q = lanes.samples.q;
   const auto& [near, move] = parts.answers.nearest_to();
-  const bool has_any =
-      find_nearest_free(arcs, *parts.request.scene, parts.model.joints, near, move, kMost, q);
+  const auto passes = [&](const double* rows, std::size_t count, bool* keep) {
+    screen.apply(rows, count, keep);
+  };
+  const bool has_any = find_nearest_passing(arcs, passes, parts.model.joints, near, move, kMost, q);
   parts.work.lap(&StageTimes::query);
   if (!has_any) return Explored::doubtful();
   refine_samples(parts, /*are_answers=*/false);
   if (!q.empty()) return Explored::done();
+  // What a filter lets through may be but a little part of an arc.
+  if (parts.request.filter) return Explored::doubtful();
   // One may be known all the same, or lie between the points.
   const auto knows_free = [&] {
     bool free = false;
@@ -183,16 +187,15 @@ Explored explore_curve(const AllSearch& parts, const Pose& Y) {
     return explore_spread(parts, Y);
   }
   if (answers.wants_nearest()) return explore_nearest(parts, Y);
-  if (!answers.wants_nearest_free()) return Explored::doubtful();
-  // Mostly the nearest of all is free.
+  if (!answers.wants_nearest_passing()) return Explored::doubtful();
+  // Mostly the nearest of all passes.
   const Explored nearest = explore_nearest(parts, Y);
-  bool is_free = false;
-  if (answers.has_any()) {
-    parts.request.scene->find_free(answers.solution(answers.nearest()), 1, &is_free);
-  }
-  if (is_free || nearest.proof != Proof::none) return nearest;
+  Screen screen(parts.request, parts.model.dof);
+  bool passes = false;
+  if (answers.has_any()) screen.apply(answers.solution(answers.nearest()), 1, &passes);
+  if (passes || nearest.proof != Proof::none) return nearest;
   answers.settle(false);
-  return explore_nearest_free(parts, Y);
+  return explore_nearest_passing(parts, screen, Y);
 }
 
 }  // namespace iksel

@@ -2,6 +2,7 @@
 #include "seeds/free_samples.hpp"
 
 #include <iterator>
+#include <memory>
 #include <utility>
 
 namespace iksel {
@@ -152,10 +153,10 @@ std::size_t FreeSamples::screen_pack() {
   return free;
 }
 
-bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
-                       const JointSpace& joints, const JointVector& near, const JointMove& move,
-                       std::size_t most, std::vector<double>& q) {
-  // Nearest first, so that the scene looks at few.
+bool find_nearest_passing(const std::vector<Curve::Arc>& arcs, const Passes& passes,
+                          const JointSpace& joints, const JointVector& near, const JointMove& move,
+                          std::size_t most, std::vector<double>& q) {
+  // Nearest first, so that few are looked at.
   std::vector<std::pair<double, JointVector>> points;
   for (const Curve::Arc& arc : arcs) {
     for (const Curve::Joints& on_arc : arc.q) {
@@ -169,12 +170,14 @@ bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
   q.clear();
   for (const auto& point : points) q.insert(q.end(), point.second.begin(), point.second.end());
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.size() && kept < most; i += lanes::kWidth) {
-    const std::size_t count = std::min<std::size_t>(lanes::kWidth, points.size() - i);
-    bool free[lanes::kWidth] = {};
-    scene.find_free(&q[i * kCurveJoints], count, free);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (free[k]) std::copy_n(&q[(i + k) * kCurveJoints], kCurveJoints, &q[kCurveJoints * kept++]);
+  std::unique_ptr<bool[]> keep(new bool[points.size() + 1]);
+  // Twice as many from time to time, as a filter takes its time for each call.
+  std::size_t count = lanes::kWidth;
+  for (std::size_t i = 0; i < points.size() && kept < most; i += count, count *= 2) {
+    count = std::min(count, points.size() - i);
+    passes(&q[i * kCurveJoints], count, keep.get());
+    for (std::size_t k = 0; k < count && kept < most; ++k) {
+      if (keep[k]) std::copy_n(&q[(i + k) * kCurveJoints], kCurveJoints, &q[kCurveJoints * kept++]);
     }
   }
   q.resize(kept * kCurveJoints);

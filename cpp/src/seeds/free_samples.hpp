@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/function_ref.hpp"
 #include "goal/joint_move.hpp"
 #include "scene/scene_data.hpp"
 #include "seeds/curve.hpp"
@@ -93,10 +94,13 @@ class FreeSamples : public RowSeeds {
   std::array<double, lanes::kWidth * kCurveJoints> free_{};
 };
 
-/// Of the points on the arcs that are free the `most` nearest to `near`, row by row. False if there
-/// is no point at all.
-bool find_nearest_free(const std::vector<Curve::Arc>& arcs, const Scene& scene,
-                       const JointSpace& joints, const JointVector& near, const JointMove& move,
-                       std::size_t most, std::vector<double>& q);
+/// Which of `count` rows of joint values pass.
+using Passes = FunctionRef<void(const double* q, std::size_t count, bool* keep)>;
+
+/// Of the points on the arcs that pass the `most` nearest to `near`, row by row. False if there is
+/// no point at all.
+bool find_nearest_passing(const std::vector<Curve::Arc>& arcs, const Passes& passes,
+                          const JointSpace& joints, const JointVector& near, const JointMove& move,
+                          std::size_t most, std::vector<double>& q);
 
 }  // namespace iksel

@@ -164,6 +164,22 @@ Solutions without_answers(const Result& none) {
 
 Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
+  Solutions solutions = find_all(goal, all, request, workspace);
+  constexpr int kMost = static_cast<int>(SolutionSet::kMost / kChoice);
+  const bool saw_few = request.filter && goal.is_redundant() && all.max < kMost;
+  if (!solutions.all.empty() || !saw_few || workspace.collected.found.size() == 0) return solutions;
+  // What a filter lets through may be a little part of a self-motion.
+  SolveAllOptions more = all;
+  more.max = kMost;
+  solutions = find_all(goal, more, request, workspace);
+  if (solutions.all.size() > static_cast<std::size_t>(all.max)) {
+    solutions.all.resize(static_cast<std::size_t>(all.max));
+  }
+  return solutions;
+}
+
+Solutions Solver::Impl::find_all(const Goal& goal, const SolveAllOptions& all,
+                                 const SolveRequest& request, Workspace& workspace) const {
   if (!request.exact && goal.is_never_free()) {
     return without_answers(find_first(goal, request, workspace, nullptr));
   }

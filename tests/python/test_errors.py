@@ -57,6 +57,12 @@ def test_paths_in_no_utf8_are_named(tmp_path: Path) -> None:
         iksel.Database.load(missing)
 
 
+def test_names_too_long_for_a_file_are_named() -> None:
+    for suffix, error in (("", iksel.UnknownNameError), (".urdf", iksel.UrdfError)):
+        with pytest.raises(error, match="aaa"):
+            iksel.load_robot("a" * 300 + suffix)
+
+
 @pytest.mark.parametrize("letter", ["é", "关", "𝄞"])
 def test_no_letter_of_a_message_is_cut(letter: str) -> None:
     for start in ("", "x", "xy", "xyz"):

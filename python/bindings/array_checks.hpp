@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,18 +41,35 @@ inline std::string shape_text(const py::array& array) {
 /// Throws InvalidArgumentError about a tensor, or a sequence with one, that has to be detached from
 /// its gradients before numpy takes it.
 inline void refuse_gradients(py::handle value, const char* name) {
-  if (py::isinstance<py::array>(value) || py::isinstance<py::str>(value)) return;
-  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
-    for (const py::handle item : value) refuse_gradients(item, name);
-    return;
+  // A list may hold itself, or lists to any depth.
+  std::set<PyObject*> seen;
+  std::vector<py::object> rest{py::reinterpret_borrow<py::object>(value)};
+  while (!rest.empty()) {
+    const py::object item = std::move(rest.back());
+    rest.pop_back();
+    if (py::isinstance<py::array>(item) || py::isinstance<py::str>(item)) continue;
+    if (py::isinstance<py::list>(item) || py::isinstance<py::tuple>(item)) {
+      if (!seen.insert(item.ptr()).second) continue;
+      for (const py::handle each : item) rest.push_back(py::reinterpret_borrow<py::object>(each));
+      continue;
+    }
+    if (!py::hasattr(item, "detach") || !py::hasattr(item, "requires_grad")) continue;
+    if (PyObject_IsTrue(item.attr("requires_grad").ptr()) != 1) continue;
+    throw InvalidArgumentError(
+        std::string(name) + ": a tensor that requires gradients, which end here: call .detach()");
   }
-  if (!py::hasattr(value, "detach") || !py::hasattr(value, "requires_grad")) return;
-  if (PyObject_IsTrue(value.attr("requires_grad").ptr()) != 1) return;
+}
+
+/// Throws InvalidArgumentError about an array that says of some numbers that they are none.
+inline void refuse_masked(py::handle value, const char* name) {
+  if (!py::isinstance<py::array>(value) || !py::hasattr(value, "mask")) return;
+  if (!py::cast<bool>(py::module_::import("numpy.ma").attr("is_masked")(value))) return;
   throw InvalidArgumentError(std::string(name) +
-                             ": a tensor that requires gradients, which end here: call .detach()");
+                             ": expected numbers, got a masked array with masked entries");
 }
 
 inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
+  refuse_masked(value, name);
   const auto array = py::array::ensure(value);
   if (!array) {
     refuse_gradients(value, name);
@@ -71,10 +89,12 @@ inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
   return doubles;
 }
 
-/// Whether it is an array of aligned doubles in C order, which is read in place.
+/// Whether it is an array of aligned doubles in C order, which is read in place. Of a class derived
+/// from numpy's, as that of masked arrays, it is looked at first.
 inline bool is_doubles(py::handle value) {
   constexpr int kInPlace = py::array::c_style | kAligned;
-  if (!py::isinstance<py::array>(value)) return false;
+  const PyTypeObject* plain = py::detail::npy_api::get().PyArray_Type_;
+  if (Py_TYPE(value.ptr()) != plain) return false;
   const int flags = py::reinterpret_borrow<py::array>(value).flags();
   return (flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
 #include <new>
 
 #include "bindings.hpp"
@@ -48,13 +49,17 @@ PyObject* class_of(const std::exception& error) {
 
 void set_error(const std::exception& error) {
   const py::handle type = class_of(error);
+  // What is told may be a path, which need not be UTF-8.
+  const auto text = py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(error.what(), std::strlen(error.what()), "replace"));
+  if (!text) return;
   const auto* names = dynamic_cast<const UrdfError*>(&error);
   if (names == nullptr) {
-    PyErr_SetString(type.ptr(), error.what());
+    PyErr_SetObject(type.ptr(), text.ptr());
     return;
   }
   // Errors about names carry those that there were.
-  const py::object object = type(error.what());
+  const py::object object = type(text);
   object.attr("available") = py::tuple(py::cast(names->available()));
   PyErr_SetObject(type.ptr(), object.ptr());
 }

@@ -21,7 +21,7 @@ Strategy by_name(const std::string& text, const char* name) {
 Strategy FromPython<Strategy>::convert(py::handle value, const char* name) {
   if (is_a<Lanes>(value)) return made<Lanes>(value);
   if (is_a<Paper>(value)) return made<Paper>(value);
-  if (py::isinstance<py::str>(value)) return by_name(py::cast<std::string>(value), name);
+  if (py::isinstance<py::str>(value)) return by_name(as_text(value, name), name);
   if (!py::hasattr(value, "keys")) {
     throw_wrong_type(name, "Lanes, Paper, their name, or a mapping of it and fields", value);
   }
@@ -31,7 +31,7 @@ Strategy FromPython<Strategy>::convert(py::handle value, const char* name) {
                                kLanes + " or " + kPaper);
   }
   fields = fields.attr("copy")();
-  Strategy out = by_name(py::cast<std::string>(fields.attr("pop")(kNameKey)), name);
+  Strategy out = by_name(as_text(fields.attr("pop")(kNameKey), name), name);
   std::visit([&](auto& each) { assign(&each, struct_type<Plain<decltype(each)>>(), fields); }, out);
   return out;
 }

@@ -45,12 +45,25 @@ int refuse_constructor(PyObject* self, PyObject* /*arguments*/, PyObject* /*keyw
   return -1;
 }
 
+/// repr(), if it ends: that of lists in lists in lists does not.
+py::str repr_of(py::handle value) {
+  try {
+    return py::repr(value);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_RecursionError)) throw;
+    return "...";
+  }
+}
+
 }  // namespace
 
 std::string describe(py::handle value) {
-  std::string text = py::cast<std::string>(py::repr(value));
-  constexpr std::size_t kLongest = 60;
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  constexpr Py_ssize_t kLongest = 60;  // characters
+  const py::str whole = repr_of(value);
+  const auto start =
+      py::reinterpret_steal<py::object>(PyUnicode_Substring(whole.ptr(), 0, kLongest));
+  std::string text = py::bytes(start.attr("encode")("utf-8", "backslashreplace"));
+  if (PyUnicode_GetLength(whole.ptr()) > kLongest) text += "...";
   std::string type = Py_TYPE(value.ptr())->tp_name;
   // Nobody but us knows that module.
   const std::string own = "iksel_cpp.";

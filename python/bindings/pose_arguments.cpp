@@ -32,6 +32,7 @@ py::object to_matrices(py::handle value, const char* name) {
   if (py::isinstance<py::array>(value) && has_matrices(py::reinterpret_borrow<py::array>(value))) {
     return py::reinterpret_borrow<py::object>(value);
   }
+  refuse_masked(value, name);
   static const py::handle function = of_package("iksel._base.pose_forms", "to_matrices").release();
   const py::object matrices = function(value, name);
   if (matrices.is(value)) refuse_gradients(value, name);

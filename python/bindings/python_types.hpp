@@ -194,9 +194,11 @@ struct FromPython<T, std::enable_if_t<std::is_integral_v<T>>> {
     const bool is_wrong = PyErr_Occurred() != nullptr;
     if (is_wrong) PyErr_Clear();
     if (is_wrong || wide < Widest{Limits::min()} || wide > Widest{Limits::max()}) {
-      const std::string range = std::is_unsigned_v<T> ? "of 0 or more"
-                                                      : "from " + std::to_string(Limits::min()) +
-                                                            " to " + std::to_string(Limits::max());
+      const bool is_negative = number && number < py::int_(0);
+      const std::string range =
+          std::is_unsigned_v<T> && is_negative
+              ? "of 0 or more"
+              : "from " + std::to_string(Limits::min()) + " to " + std::to_string(Limits::max());
       throw_wrong_type(name, "an int " + range, value);
     }
     return static_cast<T>(wide);

@@ -86,8 +86,10 @@ def read_description(
         source = mend_xml(source)
     if isinstance(source, str):
         if is_xml(source):
+            _refuse_arguments(xacro_args)
             return Description(_refuse_other_text(source), "URDF")
         if source in manifest():
+            _refuse_arguments(xacro_args)
             return Description(urdf_text(manifest()[source]), "URDF")
         if source.startswith(_descriptions.PREFIX):
             found = _descriptions.find_described(source)
@@ -120,11 +122,15 @@ def _read_file(
 
 def _read_object(value: Any, xacro_args: Mapping[str, str] | None) -> Description:
     model = _models.read_model(value)
+    _refuse_arguments(xacro_args)
+    urdf = mend_xml(model.urdf) if isinstance(model.urdf, bytes) else model.urdf
+    return Description(urdf, "object", tip_link=model.tip_link)
+
+
+def _refuse_arguments(xacro_args: Mapping[str, str] | None) -> None:
     if xacro_args:
         names = ", ".join(xacro_args)
         raise UrdfError(f"xacro_args: {names}, but the robot is no xacro file")
-    urdf = mend_xml(model.urdf) if isinstance(model.urdf, bytes) else model.urdf
-    return Description(urdf, "object", tip_link=model.tip_link)
 
 
 def _root(source: Source) -> ET.Element | None:

@@ -201,7 +201,12 @@ def _checked_name(source: Source) -> str:
 def _looks_like_a_file(name: str) -> bool:
     """Whether a name is a path rather than a robot's."""
     path = Path(name)
-    return os.sep in name or path.suffix in FILE_SUFFIXES or path.exists()
+    if os.sep in name or path.suffix in FILE_SUFFIXES:
+        return True
+    try:
+        return path.exists()
+    except OSError:  # longer than a file's name may be
+        return False
 
 
 def _given_srdf(

@@ -164,3 +164,32 @@ def test_empty_batches_are_fine(robot, solver):
 def test_bad_thread_count_is_refused(solver, poses, threads):
     with pytest.raises(core.InvalidArgumentError, match=r"^threads: "):
         solver.solve_batch(poses, threads=threads)
+
+
+def test_masked_entries_are_refused(robot, solver, poses):
+    q = np.ma.array(np.zeros(6), mask=[0, 1, 0, 0, 0, 0])
+    pose = np.ma.array(poses[0], mask=np.eye(4))
+    for function, array in (
+        (robot.fk, q),
+        (solver.solve, pose),
+        (solver.solve, pose[:3]),
+        (solver.solve_batch, pose[None]),
+    ):
+        with pytest.raises(core.InvalidArgumentError, match="masked entries"):
+            function(array)
+    np.testing.assert_array_equal(robot.fk(np.ma.array(q.data)), robot.fk(q.data))
+
+
+def test_numbers_that_are_too_large_are_said_to_be(robot):
+    for n, expected in ((10**20, f"from 0 to {2**64 - 1}"), (-1, "of 0 or more")):
+        with pytest.raises(core.InvalidArgumentError, match=f"^n: .*{expected}"):
+            robot.random_configurations(n)
+
+
+def test_a_last_row_is_told_with_all_digits(solver):
+    pose = np.eye(4)
+    pose[3, 3] = 1 + 2e-16
+    with pytest.raises(
+        core.InvalidArgumentError, match=r"not 0 0 0 1\.0000000000000002"
+    ):
+        solver.solve(pose)

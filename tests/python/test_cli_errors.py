@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -199,3 +200,32 @@ def test_output_that_cannot_be_written_is_an_error() -> None:
         process = start("robots", stdout=full)
         _, err = process.communicate()
     assert_bad(Output(process.returncode, "", err), "cannot write the output: .*space")
+
+
+@pytest.mark.parametrize(
+    ("words", "culprit"),
+    [
+        ("solve ur3 --poses - <&-", "no poses"),
+        ("robots >&-", "cannot write the output: stdout is closed"),
+        ("info nope 2>&-", ""),
+        ("info nope 2>/dev/full", ""),
+    ],
+)
+def test_streams_that_are_closed_or_full_are_an_error(words: str, culprit: str) -> None:
+    done = subprocess.run(
+        ["sh", "-c", f"{shlex.quote(sys.executable)} -m iksel {words}"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    if culprit:
+        assert_bad(Output(done.returncode, done.stdout, done.stderr), culprit)
+
+
+def test_signs_that_stdout_has_not_are_left_out() -> None:
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    process = start("robots", stdout=subprocess.PIPE, env=environment)
+    out, err = process.communicate()
+    assert (process.returncode, err) == (0, "")
+    assert "?360" in out

@@ -360,6 +360,8 @@ def test_truncated_files_are_refused(
         assert_refused(content[:length], tmp_path / "short.iksel")
     for more in (b"\0", b"\0" * 8, content):
         assert_refused(content + more, tmp_path / "long.iksel")
+        with pytest.raises(iksel.DatabaseCorruptError, match="behind it"):
+            iksel.Database.from_bytes(content + more)
 
 
 @pytest.mark.slow
@@ -437,6 +439,21 @@ def test_places_that_cannot_be_written_are_named(database, tmp_path: Path) -> No
     with pytest.raises(iksel.DatabaseIoError, match="folder"):
         database.save(tmp_path / "folder")
     assert [path.name for path in tmp_path.iterdir()] == ["folder"]
+
+
+def test_saving_through_a_link_leaves_it(database, tmp_path: Path) -> None:
+    (tmp_path / "far").mkdir()
+    link, second = tmp_path / "link.iksel", tmp_path / "second.iksel"
+    link.symlink_to("second.iksel")
+    second.symlink_to(tmp_path / "far" / "real.iksel")
+    for _ in range(2):  # first it points to nothing
+        database.save(link)
+        assert link.is_symlink()
+        assert second.is_symlink()
+    assert len(iksel.Database.load(tmp_path / "far" / "real.iksel")) == len(database)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == [
+        *("far", "link.iksel", "real.iksel", "second.iksel")
+    ]
 
 
 def test_saving_never_replaces_a_device(database, tmp_path: Path) -> None:

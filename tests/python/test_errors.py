@@ -45,6 +45,33 @@ def test_paths_that_no_file_can_have_are_named() -> None:
         iksel.Database.load("a\0.iksel")
 
 
+def test_paths_in_no_utf8_are_named(tmp_path: Path) -> None:
+    missing = f"{tmp_path}/y\udcff"
+    broken = Path(f"{tmp_path}/bad\udcff.urdf")
+    broken.write_text("<robot><link/></robot>", encoding="utf-8")
+    for path in (missing, broken, tmp_path):
+        for read in (iksel.load_robot, iksel.LinkTree.from_urdf):
+            with pytest.raises(iksel.UrdfError, match=re.escape(str(tmp_path))):
+                read(path)
+    with pytest.raises(iksel.DatabaseIoError, match="y\ufffd"):
+        iksel.Database.load(missing)
+
+
+def test_names_too_long_for_a_file_are_named() -> None:
+    for suffix, error in (("", iksel.UnknownNameError), (".urdf", iksel.UrdfError)):
+        with pytest.raises(error, match="aaa"):
+            iksel.load_robot("a" * 300 + suffix)
+
+
+@pytest.mark.parametrize("letter", ["é", "关", "𝄞"])
+def test_no_letter_of_a_message_is_cut(letter: str) -> None:
+    for start in ("", "x", "xy", "xyz"):
+        text = start + letter * 600
+        assert "\ufffd" not in refuse(arm(axis=text), letter)
+        with pytest.raises(iksel.InvalidArgumentError, match=f"'{start}{letter}+\\."):
+            iksel.SolverOptions(seed=text)
+
+
 @pytest.mark.parametrize("given", [None, 3, ["a.urdf"]])
 def test_what_is_neither_path_nor_text_is_refused(given: object) -> None:
     with pytest.raises((iksel.InvalidArgumentError, TypeError)):

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mjcf_reference import MjcfFile
 from test_mjcf import random_mjcf
-from urdf_text import random_tree
+from urdf_text import LIMIT, arm, limits, random_tree
 
 import iksel
 from iksel.formats._models import KNOWN
@@ -153,6 +153,43 @@ def test_pinocchio_joints_that_a_urdf_has_not() -> None:
         with pytest.raises(iksel.UrdfError, match=message + ".* is floating"):
             iksel.load_robot(model, base_link=first)
     assert iksel.load_robot(model, base_link="screw/link").joint_names == ["turn"]
+
+
+def test_followers_of_pinocchio_that_stay() -> None:
+    pin = pytest.importorskip("pinocchio")
+    stay = '<mimic joint="first" multiplier="0" offset="0.2"/>'
+    text = arm(inside=LIMIT + stay)
+    robot = iksel.load_robot(pin.buildModelFromXML(text, mimic=True))
+    assert robot.joint_names == ["first"]
+    q = robot.random_configurations(5, seed=SEED)
+    same(robot.fk(q), iksel.load_robot(text).fk(q), text)
+
+
+@pytest.mark.parametrize("library", ["pinocchio", "mujoco", "urchin"])
+def test_a_missing_limit_off_the_chain_is_no_matter(tmp_path, library) -> None:
+    module = pytest.importorskip(library)
+    grip = {"kind": "prismatic", "inside": limits(0, "1e9")}
+    path = tmp_path / "arm.urdf"
+    path.write_text(arm(**grip), encoding="utf-8")
+    if library == "urchin":
+        source = module.URDF.load(str(path))
+    elif library == "pinocchio":
+        source = module.buildModelFromXML(arm(**grip))
+    else:
+        source = tmp_path / "arm.xml"
+        source.write_text(
+            """<mujoco><worldbody><body name="elbow">
+              <joint name="first" range="-57 114" limited="true"/><geom size="0.1"/>
+              <body name="hand"><joint name="second" type="slide" range="0 1e9"
+                limited="true"/><geom size="0.1"/></body>
+            </body></worldbody></mujoco>""",
+            encoding="utf-8",
+        )
+    assert iksel.load_robot(source, tip_link="elbow").joint_names == ["first"]
+    with pytest.raises(iksel.UrdfError, match="'second' has no upper.*default_limits"):
+        iksel.load_robot(source, tip_link="hand")
+    made = iksel.load_robot(source, tip_link="hand", default_limits=(-1, 0.1))
+    assert (made.lower[1], made.upper[1]) == (0, 0.1)
 
 
 def test_a_wrapper_of_pinocchio(made) -> None:

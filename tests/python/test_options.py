@@ -237,3 +237,9 @@ def test_updates_that_no_sampling_makes_are_refused():
     with pytest.raises(core.InvalidArgumentError, match="cvt_updates: only read by"):
         core.DatabaseOptions(cvt_updates=5)
     assert core.DatabaseOptions(sampling="cvt", cvt_updates=5).cvt_updates == 5
+
+
+@pytest.mark.parametrize("strategy", ["\udcff", {"name": "\udcff"}])
+def test_a_name_that_is_no_text_is_named(strategy) -> None:
+    with pytest.raises(core.InvalidArgumentError, match="strategy: .* in UTF-8"):
+        core.SolverOptions(strategy=strategy)

@@ -254,6 +254,28 @@ def test_the_scalar_comes_first_by_default(poses) -> None:
     same(iksel.pose_from_quaternion(poses[:, :3, 3], q, "wxyz"), poses, "")
 
 
+def endless() -> dict:
+    """Lists, mappings and objects that hold themselves."""
+    row: list = [1]
+    row += [row, row]
+    message: dict = {}
+    message["pose"] = message
+    one, other = types.SimpleNamespace(), types.SimpleNamespace()
+    one.A, other.A = other, one
+    deep = [1.0]
+    for _ in range(100_000):
+        deep = [deep]
+    return {"list": row, "message": message, "object": one, "deep": deep}
+
+
+@pytest.mark.parametrize("kind", endless())
+def test_what_has_no_end_is_refused(made, kind) -> None:
+    value, solver = endless()[kind], made.solver("ur3")
+    for call in (solver.solve, solver.solve_batch, solver.robot.fk, iksel.as_pose):
+        with pytest.raises(iksel.InvalidArgumentError, match="expected"):
+            call(value)
+
+
 QUATERNIONS = [
     ([0, 0, 0], [1, 0, 0, 0]),
     (np.zeros(3), np.array([1, 0, 0, 0])),

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from urdf_text import LIMIT, arm, joint, link, mimic, robot
+from urdf_text import LIMIT, arm, joint, limits, link, mimic, robot
 
 import iksel
 
@@ -89,6 +90,46 @@ def test_the_limits_of_a_follower_hold_too() -> None:
     np.testing.assert_allclose(made.lower, [-0.95], rtol=0, atol=1e-15)
     np.testing.assert_allclose(made.upper, [0.55], rtol=0, atol=1e-15)
     np.testing.assert_allclose(made.velocity_limit, [1.5], rtol=0, atol=1e-15)
+
+
+def test_a_follower_with_no_motion_is_named() -> None:
+    inside = mimic(extra="", limit=limits(3, 4))
+    match = "'second'.*lower 3, upper 4.*'first'.*from -1 to 2"
+    with pytest.raises(iksel.UrdfError, match=match):
+        iksel.Robot.from_urdf(arm(inside=inside))
+
+
+def test_slides_that_follow_what_turns_without_end() -> None:
+    def slide(limit: str, factor: float) -> str:
+        inside = mimic(limit=limit, extra=f'multiplier="{factor}" offset="0.2"')
+        second = joint("second", "elbow", "hand", kind="prismatic", inside=inside)
+        first = joint("first", "base", "elbow", kind="continuous", inside="")
+        return robot(link("base", "elbow", "hand"), first, second)
+
+    with pytest.raises(iksel.UrdfError, match="'second' has no limits.*'first'.*give"):
+        iksel.Robot.from_urdf(slide("", 0.01))
+    assert iksel.Robot.from_urdf(slide(LIMIT, 0.01)).upper == pytest.approx([180])
+    for limit in ("", LIMIT):
+        made = iksel.Robot.from_urdf(slide(limit, 0))
+        assert made.joint_types == [iksel.JointType.continuous]
+        assert made.fk([1.0])[2, 3] == pytest.approx(1.2)
+        assert iksel.Solver(made).solve(made.fk([1.0])).success
+
+
+@pytest.mark.parametrize("step", [-1, 1])
+def test_long_rows_of_followers_are_read_at_once(step: int) -> None:
+    """Each joint follows the one before or behind it: no row is walked twice."""
+    n = 20_000
+    followed = [mimic(f"j{i + step}", "") for i in range(n)]
+    followed[0 if step < 0 else -1] = LIMIT
+    joints = [
+        joint(f"j{i}", f"l{i}", f"l{i + 1}", inside=followed[i]) for i in range(n)
+    ]
+    xml = robot(link(*(f"l{i}" for i in range(n + 1))), *joints)
+    began = time.perf_counter()
+    with pytest.raises(iksel.UrdfError, match="more than 64 moving joints"):
+        iksel.Robot.from_urdf(xml)
+    assert time.perf_counter() - began < 20
 
 
 def test_mimic_joints_of_locked_joints_are_locked() -> None:

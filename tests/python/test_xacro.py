@@ -207,3 +207,10 @@ def test_expanding_leaves_other_modules_alone(
         assert "ament_index_python.packages" not in sys.modules
     iksel.load_robot(macro)
     assert "ament_index_python" not in sys.modules
+
+
+def test_arguments_of_what_is_no_xacro_are_refused(made) -> None:
+    for source in ("ur3", made.robot("ur3").urdf, made.robot("ur3").urdf.encode()):
+        for load in (iksel.load_robot, iksel.load_tree):
+            with pytest.raises(iksel.UrdfError, match="xacro_args: prefix.* no xacro"):
+                load(source, xacro_args={"prefix": "left_"})

@@ -61,6 +61,7 @@ double motion_slope(const Joint& joint, double q) {
 /// Around all values of a joint while its degree of freedom stays between two values.
 template <class Joint>
 MotionCurve::Interval motion_between(const Joint& joint, double lower, double upper) {
+  if (joint.multiplier == 0) return {joint.offset, joint.offset};  // also of infinities
   MotionCurve::Interval of = {lower, upper};
   if (joint.curve != nullptr) of = joint.curve->values_between(lower, upper);
   const double a = joint.multiplier * of.lower + joint.offset;

@@ -70,7 +70,12 @@ void throw_not_rigid(const Pose& pose, const char* name, std::ptrdiff_t index) {
   what << "not rigid, ";
   const Eigen::Matrix3d R = pose.linear();
   if (!is_affine(pose)) {
-    what << "the last row must be 0 0 0 1, not " << pose.matrix().row(3);
+    // A difference that six digits do not show is shown by all.
+    const auto row = pose.matrix().row(3);
+    const bool is_near = (row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < 1e-5;
+    const int digits = is_near ? std::numeric_limits<double>::max_digits10 : 6;
+    what << "the last row must be 0 0 0 1, not "
+         << row.format(Eigen::IOFormat(digits, Eigen::DontAlignCols));
     if (pose.matrix().col(3) == Eigen::Vector4d::UnitW()) what << "; is it transposed?";
   } else if (deviation_of(R) <= kRigidTolerance) {
     what << "det R is negative (a reflection)";

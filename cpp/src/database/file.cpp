@@ -232,7 +232,9 @@ DatabaseData read_storage(const Storage& storage, const std::string& name) {
 
   DatabaseData data = read_header(header, name);
   if (storage.size - kHeaderSize != header.payload_size) {
-    corrupt(name, "truncated: " + std::to_string(storage.size) + " bytes instead of " +
+    const bool is_short = storage.size - kHeaderSize < header.payload_size;
+    corrupt(name, (is_short ? "truncated: " : "something stands behind it: ") +
+                      std::to_string(storage.size) + " bytes instead of " +
                       std::to_string(kHeaderSize + header.payload_size));
   }
   const unsigned char* payload = storage.bytes.get() + kHeaderSize;

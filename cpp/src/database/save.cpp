@@ -82,10 +82,21 @@ bool write_all(const Descriptor& file, const Storage& storage) {
   return ::fsync(file.get()) == 0;
 }
 
+/// What a path stands for, so that renaming leaves a link what it is.
+fs::path behind_links(fs::path path) {
+  constexpr int kMost = 40;  // they may go in a circle
+  std::error_code none;
+  for (int i = 0; i < kMost && fs::is_symlink(path, none); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, none);
+  }
+  return path;
+}
+
 }  // namespace
 
 void write_file(const fs::path& path, const Storage& storage) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path target = behind_links(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   fs::path name;
   const auto fail = [&](const char* act) {
     const int error = errno;
@@ -103,7 +114,7 @@ void write_file(const fs::path& path, const Storage& storage) {
   if (file.get() < 0) fail("write");
   name = made;
   if (!write_all(file, storage)) fail("write");
-  if (::rename(name.c_str(), path.c_str()) != 0) fail("replace");
+  if (::rename(name.c_str(), target.c_str()) != 0) fail("replace");
 }
 
 }  // namespace iksel

@@ -47,8 +47,13 @@ void check_sizes(const ChainSpec& spec) {
       length += offset;
     }
     if (joint.fixed) continue;
-    const double motion =
-        largest_motion(joint, spec.variables[static_cast<std::size_t>(joint.variable)]);
+    const ChainVariable& variable = spec.variables[static_cast<std::size_t>(joint.variable)];
+    const double motion = largest_motion(joint, variable);
+    if (motion == kInfinity) {
+      throw UrdfError("joint '" + joint.name + "' has no limits, and '" + variable.name +
+                      "', which it follows, turns without end: give one of them limits, or hold "
+                      "it at a value by locked_joints");
+    }
     check_size(joint.name, "its largest value", motion, joint.prismatic ? "m" : "rad");
     if (joint.prismatic) length += motion;
     check_size(joint.name, "the chain's length up to it", length, "m");
@@ -159,7 +164,7 @@ class ChainReader {
     segment.axis = axis_of(joint);
     if (upwards) segment.axis = -segment.axis;
 
-    const Motion motion = resolve_mimic(model_, curves_, joint);
+    const Motion motion = resolve_mimic(model_, curves_, joint, mimics_);
     static_cast<Following&>(segment) = motion;
     const auto locked = options_.locked_joints.find(motion.source->name);
     const auto own_lock = options_.locked_joints.find(joint.name);
@@ -205,6 +210,7 @@ class ChainReader {
   const urdf::ModelInterface& model_;
   RobotOptions& options_;
   CheckedCurves curves_;
+  ResolvedMimics mimics_;
   ChainSpec spec_;
   std::map<const urdf::Joint*, int> places_;  ///< of joints among the variables
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
@@ -82,6 +83,14 @@ void narrow_to_ends(const MotionCurve& curve, ChainVariable& variable) {
   check_limits(variable);
 }
 
+const urdf::Joint& followed_by(const urdf::ModelInterface& model, const urdf::Joint& joint) {
+  const std::string& name = joint.mimic->joint_name;
+  const auto it = model.joints_.find(name);
+  if (it != model.joints_.end()) return *it->second;
+  throw_unknown_name("joint '" + joint.name + "' mimics '" + name + "', which is not in the URDF",
+                     name, joint_names_of(model));
+}
+
 }  // namespace
 
 Eigen::Isometry3d origin_of(const urdf::Joint& joint) {
@@ -106,29 +115,28 @@ Eigen::Vector3d axis_of(const urdf::Joint& joint) {
 }
 
 Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
-                     const urdf::Joint& joint) {
-  Motion motion{{}, &joint};
-  for (std::size_t steps = 0;; ++steps) {
-    const auto curve = curves.find(motion.source->name);
+                     const urdf::Joint& joint, ResolvedMimics& known) {
+  std::vector<const urdf::Joint*> path{&joint};
+  while (known.count(path.back()) == 0) {
+    const urdf::Joint& last = *path.back();
+    const auto curve = curves.find(last.name);
     if (curve != curves.end()) {
-      motion.source = curve->second.source;
-      motion.curve = curve->second.curve;
-      break;
-    }
-    if (!motion.source->mimic) break;
-    const urdf::JointMimic& mimic = *motion.source->mimic;
-    const auto it = model.joints_.find(mimic.joint_name);
-    if (it == model.joints_.end()) {
-      throw_unknown_name("joint '" + motion.source->name + "' mimics '" + mimic.joint_name +
-                             "', which is not in the URDF",
-                         mimic.joint_name, joint_names_of(model));
-    }
-    if (steps > model.joints_.size()) {
+      known[&last] = Motion{{1.0, 0.0, curve->second.curve}, curve->second.source};
+    } else if (!last.mimic) {
+      known[&last] = Motion{{}, &last};
+    } else if (path.size() > model.joints_.size()) {
       throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
+    } else {
+      path.push_back(&followed_by(model, last));
     }
-    motion.source = it->second.get();
-    motion.offset += motion.multiplier * mimic.offset;
+  }
+  Motion motion = known[path.back()];
+  // Also of those between, so that a long chain is walked once.
+  for (auto it = path.rbegin() + 1; it != path.rend(); ++it) {
+    const urdf::JointMimic& mimic = *(*it)->mimic;
+    motion.offset = mimic.multiplier * motion.offset + mimic.offset;
     motion.multiplier *= mimic.multiplier;
+    known[*it] = motion;
   }
   for (const double number : {motion.multiplier, motion.offset}) {
     if (std::abs(number) <= kMaxCoordinate) continue;
@@ -186,7 +194,14 @@ void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
                       number_text(upper));
     }
   };
+  const auto [least, most] = std::pair(variable.lower, variable.upper);
   narrow(own.lower, own.upper, variable.lower, variable.upper);
+  if (least < most && !(variable.lower < variable.upper)) {
+    throw UrdfError("joint '" + follower.name + "': its limits, lower " + number_text(own.lower) +
+                    ", upper " + number_text(own.upper) + ", leave it nowhere to go with '" +
+                    variable.name + "', which it follows and which goes from " +
+                    number_text(least) + " to " + number_text(most));
+  }
   narrow(own.soft_lower, own.soft_upper, variable.soft_lower, variable.soft_upper);
   const double slope = std::abs(motion.multiplier) * (motion.curve ? motion.curve->steepest() : 1);
   variable.velocity = std::min(variable.velocity, own.velocity / slope);

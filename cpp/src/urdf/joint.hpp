@@ -40,14 +40,15 @@ CheckedCurves check_mimic_curves(const urdf::ModelInterface& model,
 
 /// What moves a joint: `source`'s value q, as motion_of says (base/motion_curve.hpp).
 struct Motion : Following {
-  const urdf::Joint* source;
+  const urdf::Joint* source = nullptr;
 };
+using ResolvedMimics = std::map<const urdf::Joint*, Motion>;
 
-/// Through any number of mimic tags, and a curve in the place of the last. Throws UnknownNameError
-/// if one names no joint, and UrdfError if they go in a circle, end at a joint that has no value,
-/// or a number is too large.
+/// Through any number of mimic tags, and a curve in the place of the last; `known` are those of
+/// calls before, to which it adds. Throws UnknownNameError if one names no joint, and UrdfError if
+/// they go in a circle, end at a joint that has no value, or a number is too large.
 Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
-                     const urdf::Joint& joint);
+                     const urdf::Joint& joint, ResolvedMimics& known);
 
 /// The degree of freedom that a joint is. One that turns and has infinite limits is continuous.
 /// Throws UrdfError if it has no limits and the options no default ones.

@@ -20,6 +20,17 @@
 namespace iksel {
 namespace {
 
+/// console_bridge ends a long message after a number of bytes: what it left of a character goes.
+std::string without_cut_character(std::string text) {
+  std::size_t last = text.size();
+  while (last > 0 && (static_cast<unsigned char>(text[last - 1]) & 0xC0U) == 0x80) --last;
+  if (last == 0) return text;
+  const auto lead = static_cast<unsigned char>(text[--last]);
+  const std::size_t length = lead < 0xC0 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  if (text.size() - last < length) text.erase(last);
+  return text;
+}
+
 /// While it lives, console_bridge's messages are collected instead of printed. console_bridge has
 /// one handler for the whole process, so only one collector lives at a time.
 class MessageCollector : public console_bridge::OutputHandler {
@@ -39,7 +50,7 @@ class MessageCollector : public console_bridge::OutputHandler {
   void log(const std::string& text, console_bridge::LogLevel /*level*/, const char* /*filename*/,
            int /*line*/) override {
     if (!text_.empty()) text_ += "; ";
-    text_ += text;
+    text_ += without_cut_character(text);
   }
 
   [[nodiscard]] const std::string& text() const { return text_; }

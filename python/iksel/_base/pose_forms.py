@@ -7,7 +7,7 @@ The core calls `to_matrices` about what does not end with axes of 4 and 4.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from iksel_cpp import RIGID_TOLERANCE, InvalidArgumentError, _describe
@@ -33,7 +33,10 @@ def to_matrices(value: Any, name: str) -> Any:
         InvalidArgumentError: A quaternion, whose order is not known, or which is none.
     """
     if not isinstance(value, ARRAYS):
-        return _matrices_of_object(value, name)
+        try:
+            return _matrices_of_object(value, name)
+        except RecursionError:  # it holds itself
+            _refuse(name, "a pose", value)
     if pair := _pair(value):
         if not _ends_with(pair[1], 3, 3):
             raise InvalidArgumentError(f"{name}: {ORDERLESS}")
@@ -62,8 +65,9 @@ def _matrices_of_object(value: Any, name: str) -> Any:
     return to_matrices(matrix, name)
 
 
-def _refuse(name: str, expected: str, value: Any) -> None:
-    raise InvalidArgumentError(f"{name}: expected {expected}, got {_describe(value)}")
+def _refuse(name: str, expected: str, value: Any) -> NoReturn:
+    text = f"{name}: expected {expected}, got {_describe(value)}"
+    raise InvalidArgumentError(text) from None
 
 
 def _ends_with(array: Any, *shape: int) -> bool:

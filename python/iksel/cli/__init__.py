@@ -7,9 +7,12 @@ interrupted, 141 the reader of the output went away.
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import sys
 import warnings
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from iksel_cpp import AngleUnitWarning, Error
@@ -79,6 +82,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns:
         The exit status.
     """
+    if "stdout" in _prepare_streams():
+        return _report("cannot write the output: stdout is closed")
     try:
         code = _run(argv)
         sys.stdout.flush()
@@ -139,8 +144,26 @@ def _is_text(word: str) -> bool:
     return True
 
 
+def _prepare_streams() -> list[str]:
+    """Put empty streams in the place of those that are closed, which it names.
+
+    What stdout's encoding has no character for, as ASCII for a sign, becomes `?`.
+    """
+    closed = []
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            empty = Path(os.devnull).open(mode, encoding="utf-8")  # noqa: SIM115
+            setattr(sys, name, empty)
+            closed.append(name)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
+    return closed
+
+
 def _report(message: str) -> int:
-    sys.stderr.write(error_line(message))
+    with contextlib.suppress(OSError):  # there is nowhere else to say it
+        sys.stderr.write(error_line(message))
+        sys.stderr.flush()
     return EXIT_BAD_INPUT
 
 

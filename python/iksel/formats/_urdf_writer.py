@@ -89,12 +89,8 @@ class UrdfWriter:
             raise UrdfError(f"joint {name!r}: its origin is not finite")
         self._joints.add(name)
         self.links.add(child)
-        if limits is not None and max(map(abs, limits)) >= LARGEST:
-            ends = (repr(float(end)) for end in limits)
-            if min(map(abs, limits)) < LARGEST:
-                raise UrdfError(
-                    f"joint {name!r} has one limit without the other: {', '.join(ends)}"
-                )
+        # One without the other is the core's affair, if the chain goes through it.
+        if limits is not None and min(map(abs, limits)) >= LARGEST:
             limits = None
         if kind == "revolute" and limits is None:
             kind = "continuous"

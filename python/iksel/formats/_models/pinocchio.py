@@ -72,8 +72,11 @@ class _Tree:
         name = str(model.names[joint])
         child = self._writer.free_link(self._name(joint, f"{name}/link"))
         kind, axis = self._motion(joint)
+        mimic = self._mimic(joint)
         if kind == "floating":
             name = f"{model.joints[joint].shortname()} {name}"
+        if kind == "fixed":
+            origin, mimic = origin @ self._data(joint).M.homogeneous, None
         self._writer.add_joint(
             self._writer.free_joint(name),
             kind,
@@ -83,7 +86,7 @@ class _Tree:
             axis=axis,
             limits=self._limits(joint),
             velocity=self._velocity(joint),
-            mimic=self._mimic(joint),
+            mimic=mimic,
         )
         self._joint_links.append((child, np.eye(4)))
 
@@ -123,16 +126,23 @@ class _Tree:
         model = self._model.joints[joint]
         if model.nv != 1 and self._mimic(joint) is None:
             return "floating", None
-        data = model.createData()
-        model.calc(data, _neutral(self._model))
-        twist = np.asarray(data.S).reshape(-1)
         mimic = self._mimic(joint)
-        if mimic is not None and mimic[1] != 0:
+        if mimic is not None and mimic[1] == 0:  # it stays at its offset
+            return "fixed", None
+        twist = np.asarray(self._data(joint).S).reshape(-1)
+        if mimic is not None:
             twist /= mimic[1]
         linear, angular = twist[:3], twist[3:]
         if linear.any() and angular.any():
             return "floating", None  # a screw
         return ("prismatic", linear) if linear.any() else ("revolute", angular)
+
+    def _data(self, joint: int) -> Any:
+        """Where a joint is at the neutral configuration, and how it moves."""
+        model = self._model.joints[joint]
+        data = model.createData()
+        model.calc(data, _neutral(self._model))
+        return data
 
     def _limits(self, joint: int) -> tuple[float, float] | None:
         model, kind = self._model, self._model.joints[joint]

@@ -90,7 +90,7 @@ Pose Tracker::seen(int tip, const JointVector& q) const {
 
 Vector6 Tracker::weights_of(int tip) const {
   const Vector6 weights = to_vector(*closest_, solver_.impl_->rotation_weight());
-  return solver_.impl_->task_of(criteria_, tip).lower().array().isInf().select(0, weights);
+  return solver_.impl_->task_of(criteria_, tip).without_free(weights);
 }
 
 double Tracker::tool_way(const JointVector& from, const JointVector& to) const {

@@ -54,6 +54,50 @@ def test_known_motions_of_six_joints_are_followed(build: str) -> None:
     assert elsewhere <= 1 + ARMS // 20
 
 
+@pytest.mark.parametrize("name", ["irb120", "vs060", "xarm6"])
+def test_an_arm_that_is_there_stays_however_long_a_step_takes(name: str) -> None:
+    """With a target where it stood, irb120 went elsewhere after 112 of 299 motions."""
+    robot = iksel.load_robot(name)
+    for seed in range(100 * SEED, 100 * SEED + ARMS):
+        q = motion(robot, seed)[100:300]
+        tracker = iksel.Solver(robot).tracker(q[0])
+        for pose in robot.fk(q[1:]):
+            tracker.track(pose, DT)
+        before = tracker.q
+        assert tracker.track(robot.fk(before), 1.0), seed
+        np.testing.assert_array_equal(tracker.q, before)
+
+
+@pytest.mark.parametrize("build", BUILDS)
+def test_however_long_steps_take_it_goes_no_farther_than_it_must(build: str) -> None:
+    """Not farther than without its velocity but for twice the way of the motion.
+
+    An end is taken instead only if it is nearer to where the arm would be straight on,
+    and that is as far away as the target has moved.
+    """
+    random = np.random.default_rng(SEED)
+    for seed in range(100 * SEED, 100 * SEED + ARMS):
+        robot = random_arm(build, seed).robot
+        solver = iksel.Solver(robot)
+        begin, end = robot.random_configurations(2, seed=seed)
+        # Stops, turns back, and goes on twice as fast.
+        paces = 0.02 / np.abs(end - begin).max() * random.choice([-1, 0, 1, 2], 60)
+        parts = np.clip(0.3 + np.cumsum(paces), 0, 1)
+        q = begin + parts[:, None] * (end - begin)
+        tracker = solver.tracker(q[0])
+        for known, last, pose in zip(q[1:], q[:-1], robot.fk(q[1:]), strict=True):
+            least = np.abs((known - last) / robot.velocity_limit).max() + 0.01
+            dt = least * 10 ** random.uniform(0, 3)
+            before = tracker.q
+            plain = solver.tracker(before)
+            plain.track(pose, dt)
+            tracker.track(pose, dt)
+            needed = np.linalg.norm(plain.q - before)
+            moved = np.linalg.norm(tracker.q - before)
+            way = np.linalg.norm(known - last)
+            assert moved <= needed + 2 * way + 1e-3, (seed, needed, moved, way)
+
+
 def test_what_it_remembers_is_pickled() -> None:
     """A copy goes through the same singularity on the same side."""
     robot = random_arm("general", 18).robot

@@ -37,6 +37,17 @@ double part_in_time(const JointVector& move, const JointVector& longest) {
   return part;
 }
 
+/// How long it would take from q to the goal with these joint velocities, to first order [s].
+template <typename Linear>
+double time_to(const Goal& goal, const JointVector& q, const JointVector& velocity) {
+  Linear at;
+  goal.linearize(q, /*exact=*/true, at);
+  at.to_unit(goal.unit());
+  const typename Linear::Vector twist = at.J * velocity;
+  const double speed2 = twist.squaredNorm();
+  return speed2 > 0 ? at.missing.dot(twist) / speed2 : 0;
+}
+
 /// How far a pose is from another, by the largest of the weights of position and of rotation.
 double distance(const Pose& a, const Pose& b, const Vector6& weights) {
   const double position = (a.translation() - b.translation()).norm();
@@ -152,16 +163,24 @@ bool Tracker::continue_to(const Goal& goal, double dt, JointVector& q, int& step
   /// What is farther from straight on, as a part of the last move, may be the other of two. Of 200
   /// motions of random arms 2 end elsewhere, with 0.1 it were 4 (test_tracker_laws.py).
   constexpr double kAside = 0.01;
-  const JointVector move = dt * state_.velocity;
-  const JointVector ahead = q + move;
+  const JointVector from = q;
   const bool is_reached = converge(goal, kStepsToNext, q, steps);
-  // Redundant arms would go on along their self-motions; one that stood starts where it was.
-  if (state_.is_at_edge || goal.is_redundant() || move.isZero(0)) return is_reached;
-  const double aside = is_reached ? (q - ahead).norm() : kInfinity;
-  if (!(aside > kAside * move.norm())) return is_reached;
+  // Redundant arms would go on along their self-motions; one that is there has no way to go.
+  if (state_.is_at_edge || goal.is_redundant() || q == from) return is_reached;
+  // No farther than the pose has moved, whatever the time: it may have stopped.
+  const double time = goal.tips() == nullptr
+                          ? time_to<Goal::Linear>(goal, from, state_.velocity)
+                          : time_to<TipsGoal::Linear>(goal, from, state_.velocity);
+  const JointVector move = std::clamp(time, -dt, dt) * state_.velocity;
+  const double length = move.norm();
+  const JointVector ahead = from + move;
+  // Where there is no other, none that would be a turn back, or a jump.
+  const double aside = is_reached ? (q - ahead).norm() : length;
+  if (!(aside > kAside * length)) return is_reached;
   JointVector straight = solver_.robot().all().joints.clamp(ahead);
   if (!converge(goal, kStepsToNext, straight, steps)) return is_reached;
-  if ((straight - ahead).norm() < aside) q = straight;
+  if (!((straight - ahead).norm() < aside)) return is_reached;
+  q = straight;
   return true;
 }
 

@@ -363,6 +363,17 @@ TEST(Closest, WhatATaskLeavesFreeHoldsNoTrackerBack) {
   EXPECT_GE(10 * alike, 8 * q.rows());
 }
 
+TEST(Closest, WhatATaskLeavesFreeToOneSideIsAWayOfTheTarget) {
+  iksel::TargetCriteria criteria;
+  criteria.task.emplace().position_lower.fill(-iksel::kInfinity);
+  const JointVector start = JointVector::Constant(6, 0.5);
+  iksel::Tracker tracker(iksel_test::solver("ur5e"), start, PoseWeights(), criteria);
+  Pose target = iksel_test::robot("ur5e").fk(start);
+  target.translate(Eigen::Vector3d(-1e-3, 0, 0));
+  static_cast<void>(tracker.track(target, Excursion::kDt));
+  EXPECT_GT(tracker.state().speed, 0.05);
+}
+
 TEST(Closest, TrackerComesBackOnTheSideThatItLeft) {
   // Stretched out, an elbow may bend to both sides: it does to the one that it had before, whatever
   // side the arm has in the middle of its limits.

@@ -53,11 +53,12 @@ class IKSEL_EXPORT Tracker {
   /// needs more time, and went as far on the straight way in joint space as it could, or as its
   /// tool may (kFastestTool). `closest`, only if that is asked for: the pose cannot be reached from
   /// here, and the arm went downhill to where it is nearest, by the weights; with the target it
-  /// comes back on the side that it left from. Any other: there is no continuation from here, and
-  /// the arm stays. `move` is the length of the move in joint space. In a scene the arm also stays,
-  /// with status `in_collision`, where it would collide at the end of its move; the way there is
-  /// not looked at. Throws InvalidArgumentError if the pose is not rigid, dt is not above 0, or the
-  /// scene is of another chain.
+  /// comes back on the side that it left from. While a target rests that takes longer than one
+  /// step, each brings the arm nearer, and in the end it rests too. Any other: there is no
+  /// continuation from here, and the arm stays. `move` is the length of the move in joint space. In
+  /// a scene the arm also stays, with status `in_collision`, where it would collide at the end of
+  /// its move; the way there is not looked at. Throws InvalidArgumentError if the pose is not
+  /// rigid, dt is not above 0, or the scene is of another chain.
   [[nodiscard]] Result track(const Pose& T_base_tip, double dt, const Scene* scene = nullptr);
   /// The same of several tips, a pose for each; what is said of the tool holds for the fastest.
   [[nodiscard]] Result track(const std::vector<Pose>& T_base_tip, double dt,
@@ -89,6 +90,13 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] Result approach(const Goal& goal, double dt);
   /// From where the arm is to the solution that continues its way; false if there is none.
   [[nodiscard]] bool continue_to(const Goal& goal, double dt, JointVector& q, int& steps) const;
+  /// How much of the way to `end`, which reaches the goal, there is time for; of a redundant arm
+  /// `end` may become one to which it is more.
+  [[nodiscard]] double part_of_way(const Goal& goal, double dt, JointVector& end, int& steps) const;
+  /// `part` of the way to `end`, if that brings the arm nearer; else of a way downhill, from `from`
+  /// or where the arm is, what is in time and does; 1, and `end` where the arm is, if none does.
+  [[nodiscard]] double come_closer(const Goal& goal, const JointVector& from, double dt,
+                                   double part, JointVector& end, int& steps) const;
   /// Moves `end`, where the arm can be in time, along the self-motion towards the objective.
   void improve(const Goal& goal, const JointVector& longest, double dt, JointVector& end,
                int& steps) const;
@@ -96,7 +104,7 @@ class IKSEL_EXPORT Tracker {
   [[nodiscard]] double tool_way(const JointVector& from, const JointVector& to) const;
   /// Remembers targets, and how fast they are.
   void stream_on(const Pose* targets, double dt);
-  /// How much of a move brings the tool no farther than it may go in `dt`, part at most.
+  /// How much of a move brings the tool no farther than it may go in `dt`, `part` at most.
   [[nodiscard]] double part_for_tool(const JointVector& move, double part, double dt) const;
 
   Solver solver_;

@@ -56,6 +56,11 @@ class TaskSpace {
   [[nodiscard]] const Vector6& aim_lower() const { return aim_lower_; }
   [[nodiscard]] const Vector6& aim_upper() const { return aim_upper_; }
 
+  /// Weights of the axes, with 0 for those that are free to both sides.
+  [[nodiscard]] Vector6 without_free(const Vector6& weights) const {
+    return (lower_.array().isInf() && upper_.array().isInf()).select(0, weights);
+  }
+
   /// [position; rotation] deviation of a TCP pose along the axes of the task; the rotation's is
   /// zero where all of it is free.
   [[nodiscard]] Vector6 deviation(const Pose& target, const Pose& pose) const;

@@ -23,15 +23,6 @@ Eigen::Vector3d trace_weights(const Eigen::Vector3d& squares) {
   return Eigen::Vector3d::Constant(squares.sum()) - 2 * squares;
 }
 
-/// What the axes count, squared: nothing where the task leaves them free.
-Vector6 squares(const Goal& goal, const Vector6& weights) {
-  Vector6 out = weights.cwiseAbs2();
-  for (int i = 0; i < 6; ++i) {
-    if (std::isinf(goal.task().lower()[i]) && std::isinf(goal.task().upper()[i])) out[i] = 0;
-  }
-  return out;
-}
-
 }  // namespace
 
 ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
@@ -160,7 +151,7 @@ void ClosestScreen::keep(int packs) {
 }
 
 void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& query) {
-  const Vector6 counts = squares(goal, weights);
+  const Vector6 counts = goal.task().without_free(weights).cwiseAbs2();
   use_length(counts);
   query.set_target(query.reduce(goal.nearest_pose()));
   int packs = load_seeds(query);

@@ -49,8 +49,9 @@ struct IKSEL_EXPORT Objective {
   [[nodiscard]] static Objective preferred(const Robot& robot,
                                            const std::map<std::string, double>& values,
                                            const std::map<std::string, double>& weights = {});
-  /// Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them;
-  /// joints without limits do not count (Zghal, Dubey and Euler 1990).
+  /// Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them, of
+  /// joints and of coupled limits; joints without limits do not count (Zghal, Dubey and Euler
+  /// 1990). Nearer to a limit than 1e-4 the sum goes on in a straight line.
   [[nodiscard]] static Objective far_from_limits();
   /// Far from singularities: -sqrt(det(J J^T)) (Yoshikawa 1985); of J^T J with fewer than 6 joints.
   [[nodiscard]] static Objective most_manipulable();

@@ -67,8 +67,8 @@ struct IKSEL_EXPORT TargetCriteria {
 
 /// What is asked of every answer, whatever it is asked for: of solve, solve_all, solve_path, ...
 struct IKSEL_EXPORT AnswerCriteria : TargetCriteria {
-  /// Factor on each joint's part of a move, >= 0 and not all 0 (so that radians and metres can be
-  /// compared); empty: all 1.
+  /// Factor on each joint's part of a move, >= 0, the largest from 1e-100 to 1e100 (so that radians
+  /// and metres can be compared); empty: all 1.
   JointVector weights;
   /// How a move is measured.
   MoveNorm norm = MoveNorm::two;

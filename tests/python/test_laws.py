@@ -706,3 +706,25 @@ def test_a_no_beside_a_limit_needs_few_iterations(name: str, distance: float) ->
     # A search of everything takes 1,000 and more; fewer lanes take turns.
     turns = {"scalar": 4, "sse2": 2}.get(iksel.simd_level(), 1)
     assert iterations.mean() < 60 * turns, iterations
+
+
+def test_an_arc_between_two_samples_is_found() -> None:
+    """As short as it is, it is there where a solution is."""
+    robot = random_arms.random_arm("rail", 9044).robot
+    solver = iksel.Solver(robot)
+    for pose in robot.fk(robot.random_configurations(10, 79044)):
+        assert solver.solve(pose)
+        assert solver.self_motion(pose)
+
+
+@pytest.mark.parametrize(
+    ("build", "number", "pose"),
+    [("shoulder_elbow_offset", 5027, 0), ("wrist_offset", 5119, 1)],
+)
+def test_far_from_limits_leaves_a_limit(build: str, number: int, pose: int) -> None:
+    """Also from a seed that stands at it."""
+    robot = random_arms.random_arm(build, number).robot
+    solver = iksel.Solver(robot)
+    target = robot.fk(robot.random_configurations(4, seed=number - 5000)[pose])
+    result = solver.solve(target, objective="limits")
+    assert result.cost <= 1.01 * solver.solve_all(target, objective="limits")[0].cost

@@ -8,7 +8,6 @@ import pickle
 
 import numpy as np
 import pytest
-from bench.random_arms import random_arm
 
 import iksel
 
@@ -111,15 +110,6 @@ def test_an_arc_goes_on_where_it_touches_a_limit(made, name, joint) -> None:
             near = solver.solve(pose, near=start)
             assert near
             assert np.abs(every - near.q).max(axis=1).min() <= 0.06
-
-
-def test_an_arc_between_two_samples_is_found() -> None:
-    """As short as it is, it is there where a solution is."""
-    robot = random_arm("rail", 9044).robot
-    solver = iksel.Solver(robot)
-    for pose in robot.fk(robot.random_configurations(10, 79044)):
-        assert solver.solve(pose)
-        assert solver.self_motion(pose)
 
 
 def test_out_of_reach_and_indices(solver) -> None:

@@ -10,7 +10,6 @@ import re
 import iksel_cpp
 import numpy as np
 import pytest
-from bench.random_arms import random_arm
 from command_line import Run, assert_bad, assert_good
 from conftest import CASES
 
@@ -231,19 +230,6 @@ def test_no_solution_of_seven_joints_is_better(made, name: str, objective: str) 
     for pose in solver.robot.fk(solver.robot.random_configurations(60, seed=1)):
         best = solver.solve_all(pose, objective=objective)[0].cost
         assert solver.solve(pose, objective=objective).cost <= best + 1e-3 * abs(best)
-
-
-@pytest.mark.parametrize(
-    ("build", "number", "pose"),
-    [("shoulder_elbow_offset", 5027, 0), ("wrist_offset", 5119, 1)],
-)
-def test_far_from_limits_leaves_a_limit(build: str, number: int, pose: int) -> None:
-    """Also from a seed that stands at it."""
-    robot = random_arm(build, number).robot
-    solver = iksel.Solver(robot)
-    target = robot.fk(robot.random_configurations(4, seed=number - 5000)[pose])
-    result = solver.solve(target, objective="limits")
-    assert result.cost <= 1.01 * solver.solve_all(target, objective="limits")[0].cost
 
 
 def test_exceptions_of_an_objective_reach_the_caller(made) -> None:

@@ -7,7 +7,6 @@ import pickle
 
 import numpy as np
 import pytest
-from bench.tips import torso
 from trees import two_armed, two_arms_on_torso
 from tubes import URDF
 from urdf_text import joint, limits, link, mimic, robot
@@ -484,7 +483,8 @@ def coupled() -> iksel.Solver:
     elbows = {f"{side}_{arm.joint_names[2]}": 1 for side in "lr"}
     return iksel.Solver(
         iksel.Robot.from_urdf(
-            torso(arm, ()),
+            two_arms_on_torso(arm),
+            base_link="chest",
             tip_links=[f"{side}_{arm.tip_link}" for side in "lr"],
             coupled_limits=[iksel.CoupledLimit(elbows, lower=-0.2, upper=0.2)],
         )

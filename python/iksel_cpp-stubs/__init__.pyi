@@ -1745,7 +1745,7 @@ class Objective:
     @staticmethod
     def far_from_limits() -> Objective:
         """
-        Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them; joints without limits do not count (Zghal, Dubey and Euler 1990).
+        Far from the limits: sum 1/4 (1/x_i + 1/(1 - x_i)), x_i in 0 .. 1 the place between them, of joints and of coupled limits; joints without limits do not count (Zghal, Dubey and Euler 1990). Nearer to a limit than 1e-4 the sum goes on in a straight line.
         """
     @staticmethod
     def most_manipulable() -> Objective:
@@ -2213,8 +2213,8 @@ class Solver:
                 (number of joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the
                 default tolerances; up to 100 rad always pass. Of a batch one for all targets, or (N, dof),
                 one for each.
-            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
-                metres can be compared); None: all 1.
+            weights: factor on each joint's part of a move, (dof,), >= 0, the largest from 1e-100 to 1e100
+                (so that radians and metres can be compared); None: all 1.
             norm: how a move is measured.
             seeds: joint values of any origin to iterate from [rad or m], (n, dof), inside the limits or
                 not. They are ranked and iterated as the database's own, and come before those; re-selection
@@ -2288,8 +2288,8 @@ class Solver:
                 (number of joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the
                 default tolerances; up to 100 rad always pass. Of a batch one for all targets, or (N, dof),
                 one for each.
-            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
-                metres can be compared); None: all 1.
+            weights: factor on each joint's part of a move, (dof,), >= 0, the largest from 1e-100 to 1e100
+                (so that radians and metres can be compared); None: all 1.
             norm: how a move is measured.
             seeds: joint values of any origin to iterate from [rad or m], (n, dof), inside the limits or
                 not. They are ranked and iterated as the database's own, and come before those; re-selection
@@ -2353,8 +2353,8 @@ class Solver:
                 (number of joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the
                 default tolerances; up to 100 rad always pass. Of a batch one for all targets, or (N, dof),
                 one for each.
-            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
-                metres can be compared); None: all 1.
+            weights: factor on each joint's part of a move, (dof,), >= 0, the largest from 1e-100 to 1e100
+                (so that radians and metres can be compared); None: all 1.
             norm: how a move is measured.
             seeds: joint values of any origin to iterate from [rad or m], (n, dof), inside the limits or
                 not. They are ranked and iterated as the database's own, and come before those; re-selection
@@ -2418,8 +2418,8 @@ class Solver:
                 begins nearest to the middle of the limits is taken.
             dt: time from one waypoint to the next [s]: no joint then moves farther than its velocity limit
                 allows. 0: speeds are not limited.
-            weights: factor on each joint's part of a move, (dof,), >= 0 and not all 0 (so that radians and
-                metres can be compared); None: all 1.
+            weights: factor on each joint's part of a move, (dof,), >= 0, the largest from 1e-100 to 1e100
+                (so that radians and metres can be compared); None: all 1.
             norm: how a move is measured.
             scene: what answers may not collide with, as it is when the solve begins; of a robot with the
                 same chains. The search continues within its bounds while all collide. The moves between

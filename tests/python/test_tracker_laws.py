@@ -112,7 +112,7 @@ def missing(robot: iksel.Robot, q: np.ndarray, target: np.ndarray) -> float:
 
 @pytest.mark.parametrize("build", [*BUILDS, *SEVEN])
 def test_at_a_target_that_rests_it_comes_nearer_until_it_rests(build: str) -> None:
-    """Before, arms swung to and fro for ever at 35 of 960 targets of eight arms."""
+    """Before, arms swung back and forth for ever at 35 of 960 targets of eight arms."""
     for seed in range(100 * SEED, 100 * SEED + ARMS // 4):
         robot = random_arm(build, seed).robot
         start, end = robot.random_configurations(2, seed=seed)

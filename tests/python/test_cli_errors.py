@@ -218,7 +218,8 @@ def test_streams_that_are_closed_or_full_are_an_error(words: str, culprit: str) 
         text=True,
         check=False,
     )
-    assert done.returncode == 2
+    # 120 is Python's own, where the rest of stderr cannot be written at its end.
+    assert done.returncode in ({2, 120} if words.endswith("/dev/full") else {2})
     if culprit:
         assert_bad(Output(done.returncode, done.stdout, done.stderr), culprit)
 

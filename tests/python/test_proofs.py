@@ -177,8 +177,10 @@ def test_a_last_joint_that_may_turn_as_it_likes_is_not_held_to_its_limits() -> N
         limits[:, 5] = 0.5, 3
         robot = ur5(limits)
         q[5] = 0.4995
-        result = iksel.Solver(robot).solve(robot.fk(q), task=iksel.Task.free_spin("z"))
-        assert result, f"{SEED}: {q!r}, {result.proof}"
+        solver, task = iksel.Solver(robot), iksel.Task.free_spin("z")
+        for near in (None, robot.random_configurations(1, SEED)[0]):
+            result = solver.solve(robot.fk(q), task=task, near=near)
+            assert result, f"{SEED}: {q!r}, {near!r}, {result.proof}"
 
 
 @pytest.mark.parametrize("joints", [[0, 5], [0, 3, 5]])

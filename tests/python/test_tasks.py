@@ -222,6 +222,18 @@ def test_the_nearest_spin_leaves_the_last_joint(made, name: str) -> None:
         assert near.q[-1] == pytest.approx(start[-1], abs=1e-9)
 
 
+def test_what_was_near_is_not_what_is_diagnosed(made) -> None:
+    """What a task does not feel stays at `near` for that call only."""
+    solver = made.solver("ur5e")
+    robot, task = solver.robot, iksel.Task.free_spin("z")
+    far = robot.fk(robot.random_configurations(20, seed=3))
+    far[:, :3, 3] *= 1.2
+    fresh = [iksel.Solver(robot).diagnose(pose, task=task) for pose in far]
+    for pose, expected in zip(far, fresh, strict=True):
+        solver.solve(pose, task=task, near=robot.upper)
+        assert repr(solver.diagnose(pose, task=task)) == repr(expected)
+
+
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "xarm7", "fr3"])
 @pytest.mark.parametrize("objective", ["limits", "manipulability"])
 def test_no_solution_of_seven_joints_is_better(made, name: str, objective: str) -> None:

@@ -110,6 +110,7 @@ Proof search_in_lanes(const Parts& parts) {
     branches->hold_free_joints(near_to);
     RowSeeds none(nullptr, parts.work);
     const auto explored = explore_branches(parts, *branches, Proof::closed_form, none, given, Y);
+    branches->hold_free_joints(nullptr);
     parts.answers.settle(near_to != nullptr && explored.is_done && !goal.is_full_pose());
     if (explored.is_done) return explored.proof;
   }

@@ -96,7 +96,8 @@ void Enumeration::take_turned(const Pose& Y, int lane) {
   copy_joints(lane, q.data());
   const JointSpace& joints = model_.joints;
   // Any of the joints may be on the wrong side, and others with it.
-  std::array<Joints, 1U << kPoseJoints> ways{q};
+  std::array<Joints, 1U << kPoseJoints> ways;
+  ways[0] = q;
   std::size_t count = 1;
   for (int j = 0; j < model_.dof; ++j) {
     const auto i = static_cast<std::size_t>(j);
@@ -118,7 +119,7 @@ void Enumeration::take_turned(const Pose& Y, int lane) {
 
 bool Enumeration::is_beyond(const Pose& Y, const Joints& q) const {
   // It is known of whole poses only.
-  if (chain_.is_completed() || has_families_) return false;
+  if (chain_.is_completed() || chain_.has_families()) return false;
   const Pose T_base_tcp = to_pose(model_.kernel.base) * Y * to_pose(model_.kernel.tip);
   return is_beyond_limits(model_, T_base_tcp, Eigen::Map<const Eigen::VectorXd>(q.data(), 6),
                           position_tolerance_, rotation_tolerance_);

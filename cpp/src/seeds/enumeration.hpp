@@ -20,7 +20,8 @@ class Enumeration final : public BranchList {
               const lanes::LaneKernels& kernels);
 
   /// From now on, joints of which the angle does not matter stay as in q, inside the limits, so
-  /// that each branch is but the one solution that is nearest to it; null: they are anywhere.
+  /// that each branch is but the one solution that is nearest to it; null: they are anywhere. q
+  /// must outlive what is found so.
   void hold_free_joints(const JointVector* q);
   /// Of the task that the chain was completed for. Where not all are wanted, branches inside the
   /// limits are not looked at any closer: one of them will do.

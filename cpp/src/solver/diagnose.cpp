@@ -115,7 +115,7 @@ class Diagnoser {
       model_.joints.wrap_sums(branch.data());
       effort.from(branch);
       if (is_answer(model_.joints.clamp(branch))) return true;
-      const double violation = set_violation(model_.joints, branch, out_);
+      const double violation = worst_violation(model_.joints, branch);
       if (violation >= least) continue;
       least = violation;
       out_.branch = branch;

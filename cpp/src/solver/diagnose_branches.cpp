@@ -153,8 +153,7 @@ JointVector find_nearest(const Goal& goal, const Enumeration& branches) {
     double position = 0;
     double rotation = 0;
     goal.measure(q, position, rotation);
-    Diagnosis which;
-    const double violation = set_violation(goal.joints(), q, which);
+    const double violation = worst_violation(goal.joints(), q);
     if (!goal.is_reached(position, rotation) || violation >= least) continue;
     least = violation;
     nearest = q;

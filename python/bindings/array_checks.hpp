@@ -93,8 +93,8 @@ inline DoubleArray convert_to_doubles(py::handle value, const char* name) {
 /// from numpy's, as that of masked arrays, it is looked at first.
 inline bool is_doubles(py::handle value) {
   constexpr int kInPlace = py::array::c_style | kAligned;
-  const PyTypeObject* plain = py::detail::npy_api::get().PyArray_Type_;
-  if (Py_TYPE(value.ptr()) != plain) return false;
+  static const py::handle plain = of_package("numpy", "ndarray").release();
+  if (!py::type::handle_of(value).is(plain)) return false;
   const int flags = py::reinterpret_borrow<py::array>(value).flags();
   return (flags & kInPlace) == kInPlace && py::isinstance<DoubleArray>(value);
 }

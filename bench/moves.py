@@ -4,7 +4,8 @@
 Arms are drawn at random; their constants of `near` are measured by this. Moves start
 at any configuration, or beside an answer. With --odd, poses have joints at limits and
 right angles, where arms are singular; then the configuration that the pose was made of,
-and solve_all, are beside them as well.
+and solve_all, are beside them as well. With --task, axes are left free, of arms of any
+build; then these two alone are beside them.
 """
 
 from __future__ import annotations
@@ -32,6 +33,13 @@ SPACING = 0.01
 """Of the configurations along an arc [rad]."""
 LONGER = 0.01
 """A move that is longer by more than this is not the shortest [rad]."""
+TASKS = {
+    "pose": iksel.Task.pose(),
+    "spin": iksel.Task.free_spin("z"),
+    "position": iksel.Task.position_only(),
+}
+MOST = 256
+"""Solutions of a task that are beside a move."""
 APART = 77777
 """Between the seeds of poses and of where moves start."""
 
@@ -104,6 +112,7 @@ def add(commands: Any) -> None:
     command.add_argument(
         "--odd", action="store_true", help="poses with joints at limits, right angles"
     )
+    command.add_argument("--task", choices=TASKS, default="pose", help="what is asked")
     add_seed(command, 1000)
 
 
@@ -111,10 +120,11 @@ def least_known(
     solver: iksel.Solver, pose: Array, known: Array, start: Array, *, odd: bool
 ) -> float:
     """The shortest move that anything else finds [rad]."""
-    least = along_arcs(solver, pose, start)
-    if not odd:
+    is_task = solver.options.task != TASKS["pose"]
+    least = np.inf if is_task else along_arcs(solver, pose, start)
+    if not odd and not is_task:
         return least
-    every = solver.solve_all(pose, near=start)
+    every = solver.solve_all(pose, near=start, max=MOST if is_task else 64)
     others = [one.move for one in every]
     return min(least, shortest(solver.robot, known[None], start), *others)
 
@@ -125,9 +135,10 @@ def run(args: argparse.Namespace) -> int:
     for build in args.builds:
         count = longer = 0
         for i, arm in enumerate(arms(build, args.arms, None, args.seed)):
-            if arm.robot.structure.kind != iksel.StructureKind.swept:
+            kind = arm.robot.structure.kind
+            if args.task == "pose" and kind != iksel.StructureKind.swept:
                 continue
-            solver = iksel.Solver(arm.robot)
+            solver = iksel.Solver(arm.robot, iksel.SolverOptions(task=TASKS[args.task]))
             drawn = known_and_starts(
                 arm, args.poses, args.seed + i, args.beside, odd=args.odd
             )
@@ -142,6 +153,7 @@ def run(args: argparse.Namespace) -> int:
         line |= {
             "beside": args.beside,
             "odd": args.odd,
+            "task": args.task,
             "longer": longer,
             "simd": iksel.simd_level(),
         }

@@ -102,4 +102,9 @@ int descend_to_near(const Goal& goal, const JointMove& move, const JointVector& 
   return steps;
 }
 
+int descend_in_time(const Goal& goal, const JointVector& longest, const JointVector& from,
+                    JointVector& q) {
+  return descend_to_near(goal, JointMove(weights_of_time(longest), MoveNorm::max), from, q);
+}
+
 }  // namespace iksel

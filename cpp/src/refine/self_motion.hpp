@@ -30,6 +30,10 @@ int descend_self_motion(const Goal& goal, const JointCost& cost, int most, Joint
 /// Moves q so to where the move from `near` is at a local minimum.
 int descend_to_near(const Goal& goal, const JointMove& move, const JointVector& near,
                     JointVector& q);
+/// And to where the joint is least late that is latest to come from `from`, where these moves are
+/// the longest in time.
+int descend_in_time(const Goal& goal, const JointVector& longest, const JointVector& from,
+                    JointVector& q);
 
 /// Steps from a configuration to the next pose of a path at most.
 inline constexpr int kStepsToNext = 20;

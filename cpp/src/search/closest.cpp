@@ -6,7 +6,6 @@
 
 #include "base/constants.hpp"
 #include "goal/joint_move.hpp"
-#include "goal/objective_cost.hpp"
 #include "goal/screen.hpp"
 #include "refine/closest_descent.hpp"
 #include "seeds/closest_screen.hpp"
@@ -148,9 +147,6 @@ void give_closest(const SolverOptions& options, const Goal& goal, const SolveReq
     if (!keep) continue;
     set_closest(goal, minimum.q, result);
     if (request.near) result.move = minimum.move;
-    if (result.success() && request.objective.is_set()) {
-      result.cost = ObjectiveCost(goal.robot(), request.objective).value(result.q);
-    }
     return;
   }
 }

@@ -2,6 +2,7 @@
 // The answers of a search that continues after the first: every distinct solution is kept.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -88,9 +89,6 @@ class Collector : public SearchState {
   void look_for_partners(bool look);
   /// Says that all branches in closed form were tried: what is left lies around those in doubt.
   void set_all_branches_tried() { has_all_branches_ = true; }
-  /// Says that what was found lies all over a self-motion.
-  void set_spread_out() { are_spread_out_ = true; }
-  [[nodiscard]] bool are_spread_out() const { return are_spread_out_; }
   /// Says that the nearest is looked for on families of solutions that are no curves.
   void set_surfaces() { are_surfaces_ = true; }
   [[nodiscard]] bool are_surfaces() const { return are_surfaces_; }
@@ -129,6 +127,8 @@ class Collector : public SearchState {
   }
   /// What a move must be less than to be of use; infinite if all are.
   [[nodiscard]] double within() const { return aim_.within; }
+  /// And to be the nearest of these.
+  [[nodiscard]] double move_to_beat() const { return std::min(least_move(), within()); }
   /// Which of those that were found, of one at least, is nearest to what the nearest is wanted to.
   [[nodiscard]] std::size_t nearest() const {
     std::size_t least = 0;
@@ -194,7 +194,6 @@ class Collector : public SearchState {
   bool looks_for_partners_ = true;
   bool has_all_branches_ = false;
   bool are_surfaces_ = false;
-  bool are_spread_out_ = false;
   bool has_converged_ = false;  ///< from `near`
   bool is_settled_ = false;
   bool is_out_of_time_ = false;

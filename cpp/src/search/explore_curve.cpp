@@ -54,7 +54,7 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
 /// Refines the least moves to the curve, the nearest first, until one leads to such an answer.
 void refine_nearest(const AllSearch& parts, NearestOnCurve& curve) {
   Collector& answers = parts.answers;
-  const double known = std::min(answers.least_move(), answers.within());
+  const double known = answers.move_to_beat();
   curve.find_between(known);
   parts.work.lap(&StageTimes::query);
   bool has_led_to_answer = false;
@@ -116,8 +116,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
   const bool is_bounded = answers.within() < kInfinity;
-  const double known = std::min(answers.least_move(), answers.within());
-  const bool is_seen = curve.find_at_samples(Y, near, move, known);
+  const bool is_seen = curve.find_at_samples(Y, near, move, answers.move_to_beat());
   parts.work.lap(&StageTimes::query);
   // Where there is none, what looks for any is sooner through than what looks between samples.
   if (!is_seen && !answers.has_any() && !is_bounded) {
@@ -132,7 +131,7 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
     }
     return Explored::done();
   }
-  if (answers.has_any() || is_bounded) return Explored::done();
+  if (is_bounded) return Explored::done();
   return is_seen ? explore_any(parts, Y) : Explored::doubtful();
 }
 
@@ -158,7 +157,7 @@ Explored explore_nearest_passing(const AllSearch& parts, Screen& screen, const P
   const auto knows_free = [&] {
     bool free = false;
     for (std::size_t i = 0; i < parts.answers.count() && !free; ++i) {
-      parts.request.scene->find_free(parts.answers.solution(i), 1, &free);
+      screen.apply(parts.answers.solution(i), 1, &free);
     }
     return free;
   };
@@ -182,10 +181,7 @@ void explore_families(const AllSearch& parts, const Pose& Y) {
 
 Explored explore_curve(const AllSearch& parts, const Pose& Y) {
   Collector& answers = parts.answers;
-  if (answers.spread() > 0) {
-    answers.set_spread_out();
-    return explore_spread(parts, Y);
-  }
+  if (answers.spread() > 0) return explore_spread(parts, Y);
   if (answers.wants_nearest()) return explore_nearest(parts, Y);
   if (!answers.wants_nearest_passing()) return Explored::doubtful();
   // Mostly the nearest of all passes.

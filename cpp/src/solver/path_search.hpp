@@ -121,11 +121,10 @@ class PathSearch {
   /// Where nothing is reached in time: what the candidates before lead to, along the self-motion to
   /// where the joint that is latest is least so.
   void add_in_time(const Goal& goal, const Layer& before, Layer& layer) const {
-    const JointMove in_time(weights_of_time(longest_), MoveNorm::max);
     for (const PathCandidate& from : before) {
       JointVector q = from.q;
       if (!converge(goal, kStepsToNext, q)) continue;
-      descend_to_near(goal, in_time, from.q, q);
+      descend_in_time(goal, longest_, from.q, q);
       add(q, layer);
     }
   }

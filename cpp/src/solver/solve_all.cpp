@@ -18,6 +18,8 @@ namespace {
 
 /// Solutions of a redundant arm from which the asked for are spread: so many for each.
 constexpr std::size_t kChoice = 4;
+/// For no more than so many, as a set holds.
+constexpr std::size_t kMostSpread = SolutionSet::kMost / kChoice;
 
 /// A solution, or one of its periodic images.
 struct Image : Result {
@@ -164,34 +166,28 @@ Solutions without_answers(const Result& none) {
 
 Solutions Solver::Impl::solve_all(const Goal& goal, const SolveAllOptions& all,
                                   const SolveRequest& request, Workspace& workspace) const {
-  Solutions solutions = find_all(goal, all, request, workspace);
-  constexpr int kMost = static_cast<int>(SolutionSet::kMost / kChoice);
-  const bool saw_few = request.filter && goal.is_redundant() && all.max < kMost;
+  const auto most = static_cast<std::size_t>(all.max);
+  Solutions solutions = find_all(goal, all, request, most, workspace);
+  const bool saw_few = request.filter && goal.is_redundant() && most < kMostSpread;
   if (!solutions.all.empty() || !saw_few || workspace.collected.found.size() == 0) return solutions;
   // What a filter lets through may be a little part of a self-motion.
-  SolveAllOptions more = all;
-  more.max = kMost;
-  solutions = find_all(goal, more, request, workspace);
-  if (solutions.all.size() > static_cast<std::size_t>(all.max)) {
-    solutions.all.resize(static_cast<std::size_t>(all.max));
-  }
-  return solutions;
+  return find_all(goal, all, request, kMostSpread, workspace);
 }
 
 Solutions Solver::Impl::find_all(const Goal& goal, const SolveAllOptions& all,
-                                 const SolveRequest& request, Workspace& workspace) const {
+                                 const SolveRequest& request, std::size_t choice,
+                                 Workspace& workspace) const {
   if (!request.exact && goal.is_never_free()) {
     return without_answers(find_first(goal, request, workspace, nullptr));
   }
-  const auto most = static_cast<std::size_t>(all.max);
   const SolutionSet& found = workspace.collected.found;
   const auto is_satisfied = [&](const Collector&) {
-    return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * most, 64);
+    return goal.is_redundant() && found.size() >= std::max<std::size_t>(kChoice * choice, 64);
   };
   Screen screen(request, robot.dof());
   // Over a self-motion; what is refused is replaced by others, no more than a set can hold.
   const std::size_t for_each = screen.is_set() ? kChoice : 1;
-  const auto spread = static_cast<int>(for_each * std::min(most, SolutionSet::kMost / kChoice));
+  const auto spread = static_cast<int>(for_each * std::min(choice, kMostSpread));
   const Collector::Aim aim{all.min_distance, true, goal.is_redundant() ? spread : 0};
   Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace);
@@ -212,8 +208,8 @@ Solutions Solver::Impl::find_all(const Goal& goal, const SolveAllOptions& all,
   are_left_out |= !goal.joints().upper.allFinite() && count_solutions(images) < free;
   std::sort(images.begin(), images.end(), cheaper);
   if (!all.whole_turns) take_first_of_each(found.size(), images);
-  are_left_out |=
-      take_best(workspaces.shared().kernels, goal.joints(), most, goal.is_redundant(), images);
+  are_left_out |= take_best(workspaces.shared().kernels, goal.joints(),
+                            static_cast<std::size_t>(all.max), goal.is_redundant(), images);
   if (are_left_out) solutions.proof = Proof::none;
 
   solutions.all.reserve(images.size());

@@ -158,9 +158,13 @@ Result Solver::Impl::solve(const Pose* targets, const SolveRequest& request, Wor
   const Scene* scene = request.scene ? &*request.scene : nullptr;
   return with_goal(targets, request, scene, [&](const Goal& goal) {
     Result result = find_answer(goal, request, workspace, times, within);
-    if (result.success() || !request.closest) return result;
-    give_closest(options, goal, request, to_vector(*request.closest, rotation_weight()), workspace,
-                 result);
+    if (!result.success() && request.closest) {
+      give_closest(options, goal, request, to_vector(*request.closest, rotation_weight()),
+                   workspace, result);
+    }
+    if (result.success() && request.objective.is_set()) {
+      result.cost = ObjectiveCost(robot.all(), request.objective).value(result.q);
+    }
     return result;
   });
 }
@@ -179,8 +183,10 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
   const auto is_satisfied = [&](const Collector& so_far) { return selector.is_satisfied(so_far); };
   // With a screen the selector decides: nothing may have passed it yet.
   const bool is_screened = screen.is_set();
+  const bool has_curve = goal.is_full_pose() && workspace.lanes && workspace.lanes->sweep;
   const Collector::Aim aim{is_screened ? kSameToScreen : kSame,
-                           selector.wants_all() && !is_screened, selector.spread(), within};
+                           selector.wants_all() && !is_screened, has_curve ? selector.spread() : 0,
+                           within};
   Collector search(goal, request, aim, is_satisfied, options.max_attempts, workspace.collected);
   collect(search, workspace, times);
 
@@ -190,13 +196,10 @@ Result Solver::Impl::find_answer(const Goal& goal, const SolveRequest& request,
     result.status = screen.refusal();
     if (selector.leaves_out()) result.proof = Proof::none;
   }
-  if (result.success()) {
-    if (request.objective.is_set()) {
-      result.cost = ObjectiveCost(robot.all(), request.objective).value(q);
-    }
-    if (request.near) result.move = JointMove(robot.dof(), request).length(q - *request.near);
-  } else {
+  if (!result.success()) {
     result.status = search.reason(result.status, result.proof);
+  } else if (request.near) {
+    result.move = JointMove(robot.dof(), request).length(q - *request.near);
   }
   result.iterations += selector.steps();
   return result;

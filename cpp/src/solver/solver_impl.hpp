@@ -74,9 +74,9 @@ struct Solver::Impl {
                StageTimes* times, double within = kInfinity) const;
   Solutions solve_all(const Goal& goal, const SolveAllOptions& all, const SolveRequest& request,
                       Workspace& workspace) const;
-  /// The same of as many solutions as that many asks for.
+  /// The same, chosen from as many solutions as `choice` of them would be.
   Solutions find_all(const Goal& goal, const SolveAllOptions& all, const SolveRequest& request,
-                     Workspace& workspace) const;
+                     std::size_t choice, Workspace& workspace) const;
   [[nodiscard]] Diagnosis diagnose(const Pose& target, const SolveRequest& request) const;
   [[nodiscard]] Diagnosis diagnose_tips(const std::vector<Pose>& targets,
                                         const SolveRequest& request) const;

@@ -211,9 +211,8 @@ double Tracker::part_of_way(const Goal& goal, double dt, JointVector& end, int& 
   double part = part_in_time(end - q_, longest);
   if (part < 1 && goal.is_redundant()) {
     // Along the self-motion to where the joint that is latest is least so.
-    const JointMove in_time(weights_of_time(longest), MoveNorm::max);
     JointVector other = end;
-    steps += descend_to_near(goal, in_time, q_, other);
+    steps += descend_in_time(goal, longest, q_, other);
     const double of_other = part_in_time(other - q_, longest);
     if (of_other > part) end = other;
     part = std::max(part, of_other);

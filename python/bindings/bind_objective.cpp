@@ -13,17 +13,11 @@ struct CostCallable : RawArgument {
 
 namespace {
 
-/// The callable in a std::function that came from Python; None if it is empty.
-template <class Held, class Function>
-py::object callable_of(const Function& function) {
-  const auto* held = function.template target<Held>();
-  return held == nullptr ? py::none() : *held->callable;
-}
-
 py::dict objective_state(const Objective& self) {
+  const auto [cost, gradient] = callables_of(self);
   return py::dict("kind"_a = enum_name(self.kind), "posture"_a = to_array(self.posture),
-                  "weights"_a = to_array(self.weights), "cost"_a = callable_of<PyCost>(self.cost),
-                  "gradient"_a = callable_of<PyGradient>(self.gradient));
+                  "weights"_a = to_array(self.weights), "cost"_a = cost ? *cost : py::none(),
+                  "gradient"_a = gradient ? *gradient : py::none());
 }
 
 Objective objective_from_state(Objective::Kind kind, const JointVector& posture,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "angle_warning.hpp"
 #include "bindings.hpp"
+#include "callables.hpp"
 #include "request_keywords.hpp"
 
 namespace iksel::python {

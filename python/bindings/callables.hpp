@@ -3,9 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "array_checks.hpp"
 
@@ -48,6 +51,55 @@ inline Objective make_custom_objective(py::handle cost, py::handle gradient) {
   return objective;
 }
 
+/// The cost and the gradient, where they came from Python.
+inline std::array<std::shared_ptr<py::object>, 2> callables_of(const Objective& objective) {
+  const auto* cost = objective.cost.target<PyCost>();
+  const auto* gradient = objective.gradient.target<PyGradient>();
+  return {cost == nullptr ? nullptr : cost->callable,
+          gradient == nullptr ? nullptr : gradient->callable};
+}
+
+inline const Objective& objective_of(const Objective& self) { return self; }
+inline const Objective& objective_of(const Tracker& self) { return self.objective(); }
+
+/// Shows the garbage collector the callables of an object, which often hold the object themselves:
+/// a method of what has the tracker, a function of a module that does.
+template <class T>
+struct CollectedCallables {
+  static void set_up(PyTypeObject* type) {
+    type->tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type->tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+      Py_VISIT(Py_TYPE(self));
+      for (const py::object* callable : own(self)) Py_VISIT(callable->ptr());
+      return 0;
+    };
+    type->tp_clear = [](PyObject* self) {
+      for (py::object* callable : own(self)) {
+        const py::object gone = std::exchange(*callable, py::none());
+      }
+      return 0;
+    };
+  }
+
+ private:
+  /// Those that no copy shares, which would show them once more than they are held. Copies are made
+  /// with the lock held, so never while garbage is collected.
+  static std::vector<py::object*> own(PyObject* self) {
+    std::vector<py::object*> found;
+    auto* const instance = reinterpret_cast<py::detail::instance*>(self);
+    if (!instance->get_value_and_holder().holder_constructed()) return found;
+    for (const auto& callable : callables_of(objective_of(py::cast<const T&>(py::handle(self))))) {
+      constexpr int kHereAndInSelf = 2;
+      if (callable.use_count() == kHereAndInSelf) found.push_back(callable.get());
+    }
+    return found;
+  }
+};
+template <>
+struct Collected<Objective> : CollectedCallables<Objective> {};
+template <>
+struct Collected<Tracker> : CollectedCallables<Tracker> {};
+
 /// An Objective, the name of one that needs nothing else, or a cost function.
 template <>
 struct FromPython<Objective> {
@@ -55,7 +107,13 @@ struct FromPython<Objective> {
     return "iksel_cpp.Objective | str | collections.abc.Callable[[numpy.ndarray], float]";
   }
   static Objective convert(py::handle value, const char* name) {
-    if (is_a<Objective>(value)) return made<Objective>(value);
+    if (is_a<Objective>(value)) {
+      const auto& given = made<Objective>(value);
+      const auto [cost, gradient] = callables_of(given);
+      if (!cost) return given;
+      // What comes of it does not share them: see Collected.
+      return make_custom_objective(*cost, gradient ? *gradient : py::none());
+    }
     if (py::isinstance<py::str>(value)) {
       const std::string given = as_text(value, name);
       if (given == enum_name(Objective::Kind::limits)) return Objective::far_from_limits();

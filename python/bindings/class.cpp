@@ -81,12 +81,13 @@ const char* header_text(const std::string& key) {
   return found->text;
 }
 
-py::custom_type_setup guard(const char* how) {
-  return py::custom_type_setup([how](PyHeapTypeObject* heap_type) {
+py::custom_type_setup guard(const char* how, void (*collect)(PyTypeObject*)) {
+  return py::custom_type_setup([how, collect](PyHeapTypeObject* heap_type) {
     PyTypeObject* type = &heap_type->ht_type;
     mark_offset = type->tp_basicsize;
     type->tp_basicsize += static_cast<Py_ssize_t>(sizeof(void*));
     type->tp_new = &make_unmade;
+    collect(type);
     if (how == nullptr) return;
     makers()[type] = how;
     type->tp_init = &refuse_constructor;

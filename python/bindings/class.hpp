@@ -62,13 +62,19 @@ struct ClassOf {
 };
 
 /// Has a class know which of its objects were not made yet. `how` says what makes one, in the place
-/// of a constructor.
-py::custom_type_setup guard(const char* how);
+/// of a constructor; `collect`: Collected<T>::set_up.
+py::custom_type_setup guard(const char* how, void (*collect)(PyTypeObject*));
 
 /// Whether there is no object of C++ in what is of such a class.
 bool is_unmade(PyObject* self);
 void set_made(PyObject* self);
 [[noreturn]] void throw_unmade();
+
+/// Specialised for what holds objects of Python, of which its garbage collector has to know.
+template <class T>
+struct Collected {
+  static void set_up(PyTypeObject* /*type*/) {}
+};
 
 template <class T>
 bool is_a(py::handle value) {
@@ -99,7 +105,8 @@ void construct(py::handle self, T&& value) {
 template <class T>
 py::class_<T> bind_class(py::module_& m, const char* name, const char* how = nullptr,
                          const char* doc = nullptr) {
-  py::class_<T> cls(m, name, doc == nullptr ? header_text(name) : doc, guard(how));
+  py::class_<T> cls(m, name, doc == nullptr ? header_text(name) : doc,
+                    guard(how, &Collected<T>::set_up));
   ClassOf<T>::type = reinterpret_cast<PyTypeObject*>(cls.ptr());
   ClassOf<T>::name = name;
   // pybind11's constructor is kept apart, behind one that reads arguments as all functions do.

@@ -4,7 +4,8 @@
 // Before 3.14, Python ends a thread that asks for the lock while the interpreter ends by
 // pthread_exit, which unwinds its stack like an exception that may not be caught: in a destructor,
 // or beneath code that catches everything, the process aborts. Such threads wait here instead, as
-// from 3.14 on, until the process has ended.
+// from 3.14 on, until the process has ended. The thread that ends the interpreter has the lock all
+// the while, and destroys what is left: it must not wait for itself.
 #pragma once
 
 #include <cxxabi.h>
@@ -18,11 +19,18 @@
 
 namespace iksel::python {
 
+/// Whether this thread has the lock; to be asked at any time, also when there is no Python any
+/// more.
+inline bool has_lock() {
+  const PyThreadState* own = PyGILState_GetThisThreadState();
+  return own != nullptr && own == py::detail::get_thread_state_unchecked();
+}
+
 /// function(), which asks for the lock; does not return if Python ends this thread, or has ended:
 /// it would give the thread a state made of what is no more there.
 template <typename Function>
 auto outlive_python(const Function& function) {
-  while (Py_IsInitialized() == 0) ::pause();
+  while (Py_IsInitialized() == 0 && !has_lock()) ::pause();
 #ifdef __GLIBCXX__
   try {
     return function();
@@ -34,13 +42,14 @@ auto outlive_python(const Function& function) {
 #endif
 }
 
-/// Lets others have the lock.
+/// Lets others have the lock, unless the interpreter ends: then all others wait.
 class GilRelease {
  public:
-  GilRelease() : state_(PyEval_SaveThread()) {}
+  GilRelease() : state_(Py_IsInitialized() == 0 ? nullptr : PyEval_SaveThread()) {}
   GilRelease(const GilRelease&) = delete;
   GilRelease& operator=(const GilRelease&) = delete;
   ~GilRelease() {
+    if (state_ == nullptr) return;
     outlive_python([this] { PyEval_RestoreThread(state_); });
   }
 

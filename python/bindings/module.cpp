@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
 
-PYBIND11_MODULE(iksel_cpp, m) {
+PYBIND11_MODULE(iksel_cpp_of_main, m) {
   m.doc() = R"(IKSel: inverse kinematics from precomputed seeds.
 
 A pose is that of the TCP, or of the tip link if there is no tool, in the base frame: a (4, 4)
@@ -30,4 +30,14 @@ Kinematics Iterations" (Yuan, Wan, Harada, 2025), called the paper below.)";
   iksel::python::bind_solver(m);
   iksel::python::bind_evaluation(m);
   iksel::python::bind_selector(m);
+}
+
+// What Python looks for. In another interpreter than the first of a process, pybind11 would wait
+// for ever for the lock that this thread holds.
+extern "C" PYBIND11_EXPORT PyObject* PyInit_iksel_cpp() {
+  if (PyInterpreterState_Get() == PyInterpreterState_Main()) return PyInit_iksel_cpp_of_main();
+  PyErr_SetString(PyExc_ImportError,
+                  "iksel cannot be imported in a subinterpreter, only in a process's main "
+                  "interpreter; under mod_wsgi set 'WSGIApplicationGroup %{GLOBAL}'");
+  return nullptr;
 }

@@ -20,6 +20,8 @@ _PACKAGES = {
 
 def explain(message: str) -> str:
     """What to say in the place of the loader's message."""
+    if "subinterpreter" in message:
+        return message
     missing = re.search(r"\b(lib[\w+-]+)\.so[.\d]*", message)
     if missing is None or missing[1] == "libiksel":
         return (

@@ -49,7 +49,7 @@ class SelfCollision:
     - "ignore": the argument `ignore` names them.
 
     Pairs that touch in some samples, but are within the margin in all of them, are held
-    to a margin of 0.
+    to a margin of 0. Safe to ask from many threads at once.
     """
 
     def __init__(

@@ -47,6 +47,8 @@ class Placed:
         self.half = np.abs(frames[..., :3, :3] @ shapes.half_axes).sum(-1)
         self._link, self._origin = shapes.link, shapes.in_link
         self._made: dict[tuple[int, int], Any] = {}
+        # Of the last test; not the shapes', which many threads may ask about at once.
+        self.result = shapes.coal.CollisionResult()
 
     def at(self, n: int, shape: int) -> Any:
         """Coal's transform of a shape at configuration n."""
@@ -92,7 +94,6 @@ class Shapes:
         self.moving = np.array([links.body[shape.link] != base for shape in shapes])
         self._shapes = shapes
         self._tests: dict[tuple[int, int], tuple[Any, Any]] = {}
-        self._result = coal.CollisionResult()
         self._requests: dict[float, Any] = {}
 
     def geometry(self, shape: int) -> Any:
@@ -117,13 +118,14 @@ class Shapes:
         convex, exact = self._tests_of(pair)
         at = placed.at(n, pair[0]), placed.at(n, pair[1])
         request = self._request(margin)
-        if not self._collide(convex, at, request):
+        result = placed.result
+        result.clear()
+        if not convex(*at, request, result):
             return False
-        return hulls or exact is None or self._collide(exact, at, request)
-
-    def _collide(self, test: Any, at: tuple[Any, Any], request: Any) -> bool:
-        self._result.clear()
-        return bool(test(*at, request, self._result))
+        if hulls or exact is None:
+            return True
+        result.clear()
+        return bool(exact(*at, request, result))
 
     def _tests_of(self, pair: tuple[int, int]) -> tuple[Any, Any]:
         if pair not in self._tests:
@@ -136,9 +138,10 @@ class Shapes:
 
     def _request(self, margin: float) -> Any:
         if margin not in self._requests:
-            request = self._requests[margin] = self.coal.CollisionRequest()
+            request = self.coal.CollisionRequest()
             request.security_margin = margin
             request.enable_contact = False
+            self._requests[margin] = request
         return self._requests[margin]
 
 

@@ -2158,9 +2158,9 @@ class Solver:
                 while all are refused. Of a batch it is asked about the first answers of up to 256 targets
                 at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
                 each at the pose and inside the limits, returns n truth values.
-            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
-                found by then is judged. The one option under which the same input may give different
-                answers.
+            deadline: wall-clock time after which no new stage of a target's search begins [s], above 0.
+                What was found by then is judged. The one option under which the same input may give
+                different answers.
             task: what of the pose has to be reached, of several tips of each; what is not given here is as
                 the solver's options say.
             tasks: of several tips, one for each in the place of `task`. None: `task` holds for all.
@@ -2234,9 +2234,9 @@ class Solver:
                 while all are refused. Of a batch it is asked about the first answers of up to 256 targets
                 at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
                 each at the pose and inside the limits, returns n truth values.
-            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
-                found by then is judged. The one option under which the same input may give different
-                answers.
+            deadline: wall-clock time after which no new stage of a target's search begins [s], above 0.
+                What was found by then is judged. The one option under which the same input may give
+                different answers.
             task: what of the pose has to be reached, of several tips of each; what is not given here is as
                 the solver's options say.
             objective: what the answer is to be good at besides; comes before `near`, which then only
@@ -2309,9 +2309,9 @@ class Solver:
                 while all are refused. Of a batch it is asked about the first answers of up to 256 targets
                 at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
                 each at the pose and inside the limits, returns n truth values.
-            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
-                found by then is judged. The one option under which the same input may give different
-                answers.
+            deadline: wall-clock time after which no new stage of a target's search begins [s], above 0.
+                What was found by then is judged. The one option under which the same input may give
+                different answers.
             task: what of the pose has to be reached, of several tips of each; what is not given here is as
                 the solver's options say.
             objective: what the answer is to be good at besides; comes before `near`, which then only
@@ -2374,9 +2374,9 @@ class Solver:
                 while all are refused. Of a batch it is asked about the first answers of up to 256 targets
                 at once, of a path about one waypoint's. None: takes all. Called with candidates (n, dof),
                 each at the pose and inside the limits, returns n truth values.
-            deadline: wall-clock time after which no new stage of the search begins [s], above 0. What was
-                found by then is judged. The one option under which the same input may give different
-                answers.
+            deadline: wall-clock time after which no new stage of a target's search begins [s], above 0.
+                What was found by then is judged. The one option under which the same input may give
+                different answers.
             task: what of the pose has to be reached, of several tips of each; what is not given here is as
                 the solver's options say.
             objective: what the answer is to be good at besides; comes before `near`, which then only

@@ -112,8 +112,8 @@ struct IKSEL_EXPORT SolveRequest : AnswerCriteria {
   /// joints that turn), 1.5e8 rad for an arm of six joints with 1 m of reach at the default
   /// tolerances; up to 100 rad always pass.
   std::optional<JointVector> near;
-  /// Wall-clock time after which no new stage of the search begins [s], above 0. What was found by
-  /// then is judged. The one option under which the same input may give different answers.
+  /// Wall-clock time after which no new stage of a target's search begins [s], above 0. What was
+  /// found by then is judged. The one option under which the same input may give different answers.
   double deadline = std::numeric_limits<double>::infinity();
 
   /// What the answer is to be good at besides; comes before `near`, which then only measures the

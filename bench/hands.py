@@ -45,6 +45,7 @@ def add(commands: Any) -> None:
     add_count(command, "--near", 300, "moves of each start")
     add_count(command, "--free", 10_000, "targets beside bodies")
     add_count(command, "--paths", 40, "paths")
+    add_count(command, "--shared", 1, f"joints under both arms of {PAIRS}, for moves")
     add_max_error(command, 0.02)
     add_seed(command)
 
@@ -70,7 +71,7 @@ def _measure(name: str, args: argparse.Namespace, made: dict[str, Rows]) -> None
     """All that is asked for of a robot; what needs its meshes comes last."""
     if name == PAIRS:
         for start in STARTS if args.near else ():
-            row = nearest_of_pairs(start, args.near, args.seed)
+            row = nearest_of_pairs(start, args.near, args.seed, args.shared)
             made["near"][f"{name}, {start}"] = row
         if args.paths:
             made["known"][name] = paths_of_pairs(args.paths, args.seed)

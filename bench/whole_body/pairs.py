@@ -26,36 +26,45 @@ IN_TIME = 1.5
 """So many times what a motion takes by the limits of speed."""
 
 
-def random_pair(seed: int) -> Body:
-    """Two arms of seven joints, mounted anyhow on a joint that turns or slides."""
+def random_pair(seed: int, shared: int = 1) -> Body:
+    """Two arms of seven joints, mounted anyhow on joints that turn or slide."""
     rng = np.random.default_rng([seed, 4711])
-    if rng.random() < 0.5:
-        kind, lower, upper = "revolute", -rng.uniform(0.5, 3.1), rng.uniform(0.5, 3.1)
-    else:
-        kind, lower, upper = "prismatic", 0.0, rng.uniform(0.2, 1.0)
-    axis = rng.normal(size=3)
-    text = f"""<robot name="pair"><link name="base"/><link name="torso"/>
-        <joint name="shared" type="{kind}"><parent link="base"/><child link="torso"/>
-        <axis xyz="{_words(axis / np.linalg.norm(axis))}"/>
-        <limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>"""
+    text = '<robot name="pair"><link name="base"/>'
+    for i in range(shared):
+        if rng.random() < 0.5:
+            kind, lower = "revolute", -rng.uniform(0.5, 3.1)
+            upper = rng.uniform(0.5, 3.1)
+        else:
+            kind, lower, upper = "prismatic", 0.0, rng.uniform(0.2, 1.0)
+        axis = rng.normal(size=3)
+        place = rng.uniform(-0.3, 0.3, 3) if i else np.zeros(3)
+        parent, link = f"torso{i - 1}" if i else "base", f"torso{i}"
+        text += f"""<link name="{link}"/><joint name="shared{i}" type="{kind}">
+            <parent link="{parent}"/><child link="{link}"/>
+            <origin xyz="{_words(place)}"/>
+            <axis xyz="{_words(axis / np.linalg.norm(axis))}"/>
+            <limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>"""
     for side in ("a_", "b_"):
         build = BUILDS[rng.integers(len(BUILDS))]
         arm = sketch(build, int(rng.integers(1_000_000))).urdf()
         arm = re.sub(r"</?robot.*?>", "", arm)
         text += re.sub(r'\b(name|link|joint)="', rf'\1="{side}', arm)
         place, turn = rng.uniform(-0.3, 0.3, 3), rng.uniform(-3, 3, 3)
-        text += f"""<joint name="{side}mount" type="fixed"><parent link="torso"/>
-            <child link="{side}l0"/>
+        text += f"""<joint name="{side}mount" type="fixed">
+            <parent link="torso{shared - 1}"/><child link="{side}l0"/>
             <origin xyz="{_words(place)}" rpy="{_words(turn)}"/></joint>"""
     return body_of(f"pair{seed}", text + "</robot>", "base", ("a_tip", "b_tip"))
 
 
-def nearest_of_pairs(start: str, count: int, seed: int) -> dict[str, Any]:
+def nearest_of_pairs(
+    start: str, count: int, seed: int, shared: int = 1
+) -> dict[str, Any]:
     """As `nearest`, `count` moves in all; they are named by how many came before."""
     pairs = range(-(-count // EACH))
+    bodies = [random_pair(1000 * seed + k, shared) for k in pairs]
     rows = [
-        nearest(random_pair(1000 * seed + k), start, min(EACH, count - EACH * k), seed)
-        for k in pairs
+        nearest(body, start, min(EACH, count - EACH * k), seed)
+        for k, body in enumerate(bodies)
     ]
     sums = ("cases", "none", "wrong", "longer", "shorter")
     return {key: sum(row[key] for row in rows) for key in sums} | {

@@ -11,6 +11,7 @@ import iksel
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import command
+from bench.branches import SAME_MOVE
 from bench.chain import chain_from_urdf
 from bench.moves import APART
 from bench.robot_data import robots_folder
@@ -19,6 +20,7 @@ from bench.whole_body import carried
 from bench.whole_body.brute import Brute
 from bench.whole_body.free import both, load_meshes
 from bench.whole_body.nearest import nearest
+from bench.whole_body.pairs import random_pair
 from bench.whole_body.robots import load_body
 
 SEED = 3
@@ -87,6 +89,43 @@ class TestNear:
             move.append(result.move)
         result = iksel.Solver(pandas.robot).solve(poses, near=near)
         assert result.move <= np.linalg.norm(move) + 1e-6
+
+    @pytest.mark.parametrize("pair", [*range(6), 30])
+    def test_of_several_shared_joints_is_no_farther_than_what_is_known(self, pair):
+        """Both arms have answers behind few of their values."""
+        body = random_pair(pair, shared=3)
+        solver, known = iksel.Solver(body.robot), body.random_configurations(10, pair)
+        starts = changed(body.robot, known, 0.3, pair)
+        for poses, near, q in zip(body.fk(known), starts, known, strict=True):
+            move = solver.solve(poses, near=near).move
+            assert move <= np.linalg.norm(q - near) + SAME_MOVE
+
+    @pytest.mark.parametrize("pair", [8, 31, 32, 46])
+    def test_a_posture_is_where_the_search_begins(self, pair):
+        body = random_pair(pair, shared=3)
+        solver, known = iksel.Solver(body.robot), body.random_configurations(5, pair)
+        starts = changed(body.robot, known, 0.05, pair)
+        for poses, posture, q in zip(body.fk(known), starts, known, strict=True):
+            result = solver.solve(
+                poses, objective=iksel.Objective.near_posture(posture)
+            )
+            move = np.linalg.norm(result.q - posture)
+            assert move <= np.linalg.norm(q - posture) + SAME_MOVE
+
+    @pytest.mark.parametrize("shared", [1, 3])
+    @pytest.mark.parametrize("pair", [4, 8, 14, 33])
+    def test_where_a_filter_refuses_the_nearest_others_are_found(self, pair, shared):
+        body = random_pair(pair, shared)
+        solver, known = iksel.Solver(body.robot), body.random_configurations(5, pair)
+        starts = body.random_configurations(5, pair + 1)
+        for poses, near, q in zip(body.fk(known), starts, known, strict=True):
+
+            def keeps(candidates, least=q[-1] - 0.05):
+                return candidates[:, -1] >= least
+
+            result = solver.solve(poses, near=near, filter=keeps)
+            assert result.success
+            assert keeps(result.q[None]).all()
 
 
 class TestCarried:

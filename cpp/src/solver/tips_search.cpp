@@ -2,6 +2,7 @@
 #include "solver/tips_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "base/low_discrepancy.hpp"
@@ -19,6 +20,32 @@ namespace {
 constexpr int kArmAttempts = 64;
 /// Iterations of a seed while little work is done.
 constexpr int kQuickIterations = 16;
+
+/// Whether something was found that nothing refuses, as far as is known: a filter is asked later.
+bool has_passing(const Collector& found) {
+  const SolveRequest& request = found.request();
+  if (found.wants_nearest()) return found.has_any();
+  if (request.filter || request.exact) return false;
+  const auto dof = static_cast<Eigen::Index>(found.goal().joints().dof());
+  for (std::size_t i = 0; i < found.count(); ++i) {
+    if (found.goal().is_free(Eigen::Map<const Eigen::VectorXd>(found.solution(i), dof)))
+      return true;
+  }
+  return false;
+}
+
+/// From a part of kNearby seeds around what the nearest is wanted to. Returns whether the answers
+/// want no more.
+template <typename Answers>
+bool look_around(const Collector& collector, double part, std::uint64_t seed,
+                 SingleRefiner& refiner, Answers& answers) {
+  const JointVector& from = collector.nearest_to().from;
+  const int count = static_cast<int>(std::ceil(part * kNearby));
+  const std::vector<double> q = sample_around(from, seed, count);
+  RowSeeds nearby(q.data(), static_cast<std::size_t>(count), static_cast<std::size_t>(from.size()),
+                  /*are_answers=*/false, answers.work, &Work::take_guess);
+  return search(refiner, nearby, answers, answers.work);
+}
 
 }  // namespace
 
@@ -63,16 +90,23 @@ Proof TipsSearch::search_for(Answers& answers, Workspace& workspace) const {
   SingleRefiner refiner(goal.joints().dof(), attempt);
   const auto should_continue = [&] { return answers.should_continue(); };
   const SearchParts<Answers> parts{options_, workspace, answers};
-  RowSeeds near = parts.near_seed();
+  const bool wants_nearest = collector != nullptr && collector->ranks_by_move();
+  // A posture too.
+  RowSeeds near = wants_nearest ? RowSeeds(&collector->nearest_to().from, work) : parts.near_seed();
   GivenSeeds given = parts.given_seeds(1, should_continue);
   if (parts.run(refiner, near, given) || !request.database_seeds) return Proof::none;
-  const bool wants_nearest = collector != nullptr && collector->ranks_by_move();
   // Where the nearest is wanted, one is enough to look around.
-  const auto is_enough = [&] { return wants_nearest && collector->has_any(); };
+  const auto is_enough = [&] { return wants_nearest && has_passing(*collector); };
   const auto unreachable = [&](int tip, const Result& alone) {
     answers.put_unreachable(tip, alone.status);
     return alone.proof;
   };
+  const bool knows_nearest = ArmSeeds::knows_nearest(arms, collector);
+  if (knows_nearest && !SharedValues::are_dense(goal.tips()->model())) {
+    const SharedValues values(goal.tips()->model(), steps_, 0, &collector->nearest_to());
+    const double part = values.part(collector->least_move());
+    if (look_around(*collector, part, options_.seed, refiner, answers)) return Proof::none;
+  }
   Proof proof = Proof::none;
   for (const Effort effort : {Effort::quick, Effort::full}) {
     const bool is_quick = effort == Effort::quick;
@@ -86,12 +120,8 @@ Proof TipsSearch::search_for(Answers& answers, Workspace& workspace) const {
     if (search(steps, of_chains, answers, work)) return Proof::none;
     proof = of_chains.proof();
   }
-  if (is_enough() && !ArmSeeds::knows_nearest(arms, collector)) {
-    const std::vector<double> q =
-        sample_around(collector->nearest_to().from, options_.seed, kNearby);
-    RowSeeds nearby(q.data(), kNearby, q.size() / kNearby, /*are_answers=*/false, work,
-                    &Work::take_guess);
-    search(refiner, nearby, answers, work);
+  if (is_enough() && !knows_nearest) {
+    look_around(*collector, /*part=*/1, options_.seed, refiner, answers);
   }
   return proof;
 }

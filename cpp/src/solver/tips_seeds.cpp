@@ -18,6 +18,10 @@ constexpr int kSharedValues = 32;
 /// with 384, before kWorthDescending; with it 5 with 224 and 4 with 256 (moves as of python -m
 /// bench hands pairs).
 constexpr int kManyValues = 256;
+/// The same of several joints, with kNearby seeds around. Of 800 moves of random pairs on two and
+/// three, from anywhere, 59 were longer than known with 256 and no seeds, 32 with these in four
+/// fifths of the time (moves as of python -m bench hands pairs --shared 3).
+constexpr int kSparseValues = 128;
 /// Seeds of one chain each, after the first values.
 constexpr int kChainSeeds = 24;
 /// Combinations of the arms' solutions behind one value, at most.
@@ -69,18 +73,15 @@ void SharedValues::hold_stems(JointVector& q) const {
 
 bool SharedValues::next(double best, JointVector& q) {
   const int count = static_cast<int>(model_.shared.size());
-  double part = 1;  // of all values
   for (int j = 0; j < count; ++j) {
     const int joint = model_.shared[static_cast<std::size_t>(j)];
     const auto [lower, upper] = range(joint, best);
-    const auto [lowest, uppermost] = range(joint, kInfinity);
-    if (uppermost > lowest) part *= (upper - lower) / (uppermost - lowest);
     // The first is the middle.
     const double x = 0.5 + index_ * steps_[static_cast<std::size_t>(j)];
     if (index_ >= 0) q[joint] = lower + (upper - lower) * (x - std::floor(x));
     if (index_ < 0 && (-index_ - 1) / 2 == j) q[joint] = index_ % 2 == 0 ? lower : upper;
   }
-  if (index_ >= most_ * part) return false;
+  if (index_ >= most_ * part(best)) return false;
   hold_stems(q);
   ++index_;
   return true;
@@ -97,16 +98,20 @@ ArmSeeds::ArmSeeds(const Goal& goal, ArmSearch& arms, const std::vector<double>&
       to_(collector != nullptr && collector->ranks_by_move() ? &collector->nearest_to() : nullptr),
       knows_nearest_(knows_nearest(arms, collector)),
       values_(model_, steps,
-              model_.shared.empty()                       ? 1
-              : wants_many() || knows_nearest_            ? kManyValues
-              : to_ == nullptr && effort == Effort::quick ? kQuickValues
-                                                          : kSharedValues,
+              model_.shared.empty()                               ? 1
+              : wants_many()                                      ? kManyValues
+              : knows_nearest_ && SharedValues::are_dense(model_) ? kManyValues
+              : knows_nearest_                                    ? kSparseValues
+              : to_ == nullptr && effort == Effort::quick         ? kQuickValues
+                                                                  : kSharedValues,
               to_),
       order_(goal.tips()->order()) {
   // Of arms that only a sum couples, some of their solutions may go together.
   const bool go_together =
       effort == Effort::full && model_.shared.empty() && !model_.joints.sums.empty();
-  const bool combines = wants_many() || goal.scene() != nullptr || go_together;
+  const bool may_refuse =
+      goal.scene() != nullptr || (to_ != nullptr && !collector->wants_nearest());
+  const bool combines = wants_many() || may_refuse || go_together;
   of_each_ = combines ? solutions_of_each(model_.tip_count()) : 1;
 }
 
@@ -115,7 +120,9 @@ bool ArmSeeds::next_stage() {
   next_ = 0;
   if (!arms_.has_all_arms() || !work_.has_left()) return false;
   JointVector q = to_ != nullptr ? to_->from : model_.joints.middle();
-  const double best = to_ != nullptr ? collector_->least_move() : kInfinity;
+  // What was found may all be refused.
+  const bool bounds = to_ != nullptr && (collector_->wants_nearest() || effort_ == Effort::quick);
+  const double best = bounds ? collector_->least_move() : kInfinity;
   if (best < last_best_) {
     // Behind its own values there may be a nearer one.
     last_best_ = best;
@@ -223,9 +230,11 @@ void ArmSeeds::sort_out() {
   if (of_each_ == 1) return;
   keep_sums();
   if (collector_ == nullptr) return;
-  const std::size_t kept = to_ != nullptr          ? kNearestKept
-                           : model_.shared.empty() ? kCombinations
-                                                   : kManyKept;
+  // Of what a filter has not seen yet more are tried.
+  const bool is_filtered = static_cast<bool>(collector_->request().filter);
+  const std::size_t kept = to_ != nullptr && !is_filtered ? kNearestKept
+                           : model_.shared.empty()        ? kCombinations
+                                                          : kManyKept;
   const std::size_t most = std::min(seeds_.size(), kept);
   if (to_ != nullptr) {
     const auto length = [&](const JointVector& q) { return to_->move.length(q - to_->from); };

@@ -27,6 +27,20 @@ class SharedValues {
   /// Writes the next ones to q, whose shared joints are those that the nearest is wanted to; false
   /// if there are none left. `best` is the least move so far.
   bool next(double best, JointVector& q);
+  /// The part of the limits that may lead to less than `best`.
+  [[nodiscard]] double part(double best) const {
+    double product = 1;
+    for (const int joint : model_.shared) {
+      const auto [lower, upper] = range(joint, best);
+      const auto [lowest, uppermost] = range(joint, kInfinity);
+      if (uppermost > lowest) product *= (upper - lower) / (uppermost - lowest);
+    }
+    return product;
+  }
+  /// Whether few values leave nothing between them: of one joint. Behind values of more, arms with
+  /// narrow limits have answers at so few that what lies beside `near` is looked for from there
+  /// too.
+  static bool are_dense(const TipsModel& model) { return model.shared.size() <= 1; }
 
  private:
   /// Moves the shared joints inside all limits that are of these alone.

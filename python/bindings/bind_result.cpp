@@ -17,12 +17,12 @@ PyBatchResult PyBatchResult::rows(py::handle index) const {
     }
     which = empty && kind == 'f' ? array.attr("astype")("intp") : py::object(array);
   }
-  const auto take = [&](const auto& array) {
-    return std::decay_t<decltype(array)>(array.attr("__getitem__")(which).attr("copy")());
-  };
-  return {
-      take(q),        take(success),    take(status), take(position_error), take(rotation_error),
-      take(attempts), take(iterations), take(move),   take(proof)};
+  PyBatchResult out;
+  for (const Field& column : struct_type<PyBatchResult>().fields) {
+    const auto& array = as<py::object>(column.of(this));
+    *static_cast<py::object*>(column.of(&out)) = array.attr("__getitem__")(which).attr("copy")();
+  }
+  return out;
 }
 
 std::vector<Field> FieldTable<PyBatchResult>::fields() {
@@ -36,6 +36,7 @@ std::vector<Field> FieldTable<PyBatchResult>::fields() {
       .add("attempts", &B::attempts, header_text("BatchView.attempts"))
       .add("iterations", &B::iterations, header_text("BatchView.iterations"))
       .add("move", &B::move, header_text("BatchView.move"))
+      .add("unreachable_tip", &B::unreachable_tip, header_text("BatchView.unreachable_tip"))
       .all();
 }
 
@@ -71,6 +72,7 @@ void FieldTable<PyBatchResult>::check(const B& batch) {
             "errors", "0 or more where there is a q");
     require(batch.attempts.at(i) >= 0 && batch.iterations.at(i) >= 0, "attempts and iterations",
             "counts");
+    is_index<kMaxTips>(batch.unreachable_tip.at(i), of + "unreachable_tip");
     const auto dof = static_cast<int>(batch.q.shape(1));
     if (has_q) check_finite(batch.q.data(i), dof, of + "q, row " + std::to_string(i));
   }
@@ -79,11 +81,9 @@ void FieldTable<PyBatchResult>::check(const B& batch) {
 namespace {
 
 std::vector<Status> batch_statuses(const PyBatchResult& self) {
-  std::vector<Status> statuses;
-  statuses.reserve(static_cast<std::size_t>(self.size()));
-  for (py::ssize_t i = 0; i < self.size(); ++i) {
-    statuses.push_back(static_cast<Status>(self.status.at(i)));
-  }
+  std::vector<Status> statuses(static_cast<std::size_t>(self.size()));
+  std::transform(self.status.data(), self.status.data() + self.size(), statuses.begin(),
+                 [](std::uint8_t status) { return static_cast<Status>(status); });
   return statuses;
 }
 

@@ -71,10 +71,11 @@ PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& giv
   const py::ssize_t n = targets.shape(0) / self.robot().tips();
   const py::ssize_t dof = joints;
   const auto nears = as_near(given["near"], n, self.robot(), request);
-  PyBatchResult out{
-      py::array_t<double>({n, dof}), py::array_t<bool>(n),   py::array_t<std::uint8_t>(n),
-      py::array_t<double>(n),        py::array_t<double>(n), py::array_t<std::int32_t>(n),
-      py::array_t<std::int32_t>(n),  py::array_t<double>(n), py::array_t<std::uint8_t>(n)};
+  PyBatchResult out{py::array_t<double>({n, dof}), py::array_t<bool>(n),
+                    py::array_t<std::uint8_t>(n),  py::array_t<double>(n),
+                    py::array_t<double>(n),        py::array_t<std::int32_t>(n),
+                    py::array_t<std::int32_t>(n),  py::array_t<double>(n),
+                    py::array_t<std::uint8_t>(n),  py::array_t<std::int32_t>(n)};
   const BatchView view{out.q.mutable_data(),
                        out.status.mutable_data(),
                        out.position_error.mutable_data(),
@@ -82,7 +83,8 @@ PyBatchResult solve_batch(const Solver& self, py::handle poses, const Given& giv
                        out.attempts.mutable_data(),
                        out.iterations.mutable_data(),
                        out.move.mutable_data(),
-                       out.proof.mutable_data()};
+                       out.proof.mutable_data(),
+                       out.unreachable_tip.mutable_data()};
   bool* success = out.success.mutable_data();
   const double* in = targets.data();
   {

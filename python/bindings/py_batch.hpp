@@ -38,6 +38,7 @@ struct PyBatchResult {
   py::array_t<std::int32_t> iterations;
   py::array_t<double> move;
   py::array_t<std::uint8_t> proof;
+  py::array_t<std::int32_t> unreachable_tip;
 
   [[nodiscard]] py::ssize_t size() const { return status.shape(0); }
 
@@ -59,6 +60,7 @@ struct PyBatchResult {
     out.attempts = attempts.at(i);
     out.iterations = iterations.at(i);
     out.move = move.at(i);
+    out.unreachable_tip = unreachable_tip.at(i);
     return out;
   }
 

@@ -1964,6 +1964,11 @@ class BatchResult:
         """
         Whether each target is solved, (n,).
         """
+    @property
+    def unreachable_tip(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Where not solved, with several tips: one whose target its chain cannot reach by itself, (n,); -1: each can, or none was looked at.
+        """
 class Cause(enum.Enum):
     """
     Why a solve gave no answer. Certain where Diagnosis.proven is true; else found by search and so likely.

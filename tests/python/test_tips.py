@@ -148,6 +148,11 @@ def test_what_cannot_be_reached_is_named(solver, targets) -> None:
     assert len(diagnosis.q) == solver.robot.chain(1).dof
     batch = solver.solve_batch(np.stack([far, targets[0]]))
     assert np.isnan(batch.q[0]).all()
+    assert batch.unreachable_tip.tolist() == [1, -1]
+    assert [row.unreachable_tip for row in batch] == [1, None]
+    assert batch[::-1].unreachable_tip.tolist() == [-1, 1]
+    again = pickle.loads(pickle.dumps(batch))
+    np.testing.assert_array_equal(again.unreachable_tip, batch.unreachable_tip)
     assert batch[0].status == iksel.Status.out_of_reach
     with pytest.raises(iksel.InvalidArgumentError, match="ambiguous"):
         bool(batch)

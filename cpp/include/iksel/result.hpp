@@ -111,7 +111,7 @@ struct StageTimes {
 };
 
 /// Answers to many targets as arrays; row i belongs to target i. The pointers are the caller's;
-/// null for those that are not wanted of the last two.
+/// null for those that are not wanted of the last three.
 struct BatchView {
   double* q;                 ///< joint values [rad or m], (n, dof); NaN where not solved
   std::uint8_t* status;      ///< values of Status, (n,)
@@ -123,6 +123,9 @@ struct BatchView {
   double* move = nullptr;    ///< lengths of the moves from `near`, (n,); NaN where not solved or
                              ///< without one
   std::uint8_t* proof = nullptr;  ///< values of Proof, (n,); that of `answer` where solved
+  /// Where not solved, with several tips: one whose target its chain cannot reach by itself, (n,);
+  /// -1: each can, or none was looked at
+  std::int32_t* unreachable_tip = nullptr;
 };
 
 }  // namespace iksel

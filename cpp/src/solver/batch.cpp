@@ -34,6 +34,7 @@ void write_row(const Result& result, std::size_t row, int dof, const BatchView& 
   out.iterations[row] = result.iterations;
   if (out.move != nullptr) out.move[row] = result.move;
   if (out.proof != nullptr) out.proof[row] = static_cast<std::uint8_t>(result.proof);
+  if (out.unreachable_tip != nullptr) out.unreachable_tip[row] = result.unreachable_tip;
 }
 
 /// Throws InvalidArgumentError about what a row is wanted near to.

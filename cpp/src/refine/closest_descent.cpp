@@ -4,13 +4,24 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "refine/least_cost_step.hpp"
+
 namespace iksel {
 namespace {
 
-/// Leaves out what would leave limits that q stands at.
+/// Leaves out what would leave limits that q stands at. With sums a joint that pulls beyond its
+/// limit may come back as a sum is held: then the step chooses what to hold, and H is only made
+/// steep there, which changes nothing along the limits.
 void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector& gradient,
                     SquareMatrix& H) {
   const ActiveLimits at = joints.active(q, -gradient, [](int /*joint*/) { return true; });
+  if (!joints.sums.empty()) {
+    constexpr double kSteep = 10;
+    const double steep = kSteep * H.diagonal().cwiseAbs().maxCoeff();
+    H.diagonal() += steep * (JointVector::Ones(q.size()) - at.free);
+    H += steep * at.across * at.across.transpose();
+    return;
+  }
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     if (at.free[j] != 0) continue;
     gradient[j] = 0;
@@ -18,17 +29,18 @@ void hold_at_limits(const JointSpace& joints, const JointVector& q, JointVector&
     H.col(j).setZero();
     H(j, j) = 1;
   }
-  if (at.across.cols() == 0) return;
-  const SquareMatrix across = at.across * at.across.transpose();
-  const SquareMatrix along = SquareMatrix::Identity(q.size(), q.size()) - across;
-  gradient = JointVector(along * gradient);
-  H = SquareMatrix(along * H * along + across);
 }
 
 /// The step -H^-1 g inside the limits: joints that it would take beyond go to their limits, and the
 /// others do what is best then. False if H is not positive.
 bool step_inside(const JointSpace& joints, const JointVector& q, const JointVector& gradient,
                  SquareMatrix H, JointVector& step) {
+  if (!joints.sums.empty()) {
+    if (Eigen::LLT<SquareMatrix>(H).info() != Eigen::Success) return false;
+    step = LeastCostStep<Eigen::Dynamic, kMaxCoupledLimits, SquareMatrix>(joints, q, gradient, H)
+               .solve();
+    return true;
+  }
   JointVector right = -gradient;
   bool held[kMaxDof] = {};
   for (bool changed = true; changed;) {
@@ -74,6 +86,7 @@ bool step_down(const Remainder& remainder, const Slope& at, double& damping, Joi
     damped.diagonal() += damping * scale;
     JointVector step;
     if (!step_inside(joints, q, at.gradient, damped, step)) continue;
+    if (!joints.sums.empty() && -0.5 * at.gradient.dot(step) <= kNothing * at.value) return false;
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;
     const JointVector next = joints.clamp(q + step);

@@ -202,6 +202,7 @@ IKSEL_INLINE void step_to_closest(const LaneChainOf<float>& chain, const Closest
   T slope[kMaxJoints];
   T scale[kMaxJoints];
   differentiate<kFollow>(chain, target, at, kFollow ? chain.joints : n, J, slope, scale, H);
+  if (chain.sums > 0) hold_descent(chain, q, scale, slope, H);
   T free[kMaxJoints];
 #pragma GCC unroll 8
   for (int j = 0; j < n; ++j) {
@@ -251,6 +252,10 @@ void approach_of(const LaneChainOf<float>& chain, const ClosestTarget& target, i
       }
       Remaining<T> at;
       measure_remaining(frame, target, at);
+      // Where a sum could not be brought inside it is no place to be.
+      if (chain.sums > 0) {
+        at.value = select(excess_of_sums(chain, q) > T(0.0F), T(1e29F), at.value);
+      }
       // A lane that got worse goes back, and tries again from there with a shorter step.
       const auto better = at.value <= best;
       best = select(better, at.value, best);

@@ -95,6 +95,19 @@ template <typename T>
   }
 }
 
+/// How far the sum that is farthest outside lies beyond its limit; of those at limits about 0.
+template <typename T>
+IKSEL_INLINE T excess_of_sums(const LaneChainOf<NumberOf<T>>& chain, const T* q) {
+  T most = T(-1e30);
+  for (int r = 0; r < chain.sums; ++r) {
+    const auto& row = chain.sum[r];
+    const T sum = sum_of(chain, r, q);
+    const T rounding = T(row.upper) - T(row.high);
+    most = max(most, max(sum - T(row.upper), T(row.lower) - sum) - rounding);
+  }
+  return most;
+}
+
 /// Takes out of the columns of J, in lanes whose sums are at limits which the error e pulls at,
 /// what would leave them: steps J^T y then go along these.
 template <typename T>
@@ -144,6 +157,57 @@ template <typename T>
     }
     for (int j = 0; j < chain.n; ++j) {
       for (int i = 0; i < 6; ++i) J[j][i] = J[j][i] - across[i] * normal[r][j];
+    }
+  }
+}
+
+/// Takes out of a slope, in lanes whose sums are at limits which a descent would leave, what leads
+/// out of them, and makes H, whose lower half is given, steep there: steps then go along these.
+/// `scale`: H's order of magnitude, by joints.
+template <typename T>
+[[gnu::noinline]] void hold_descent(const LaneChainOf<NumberOf<T>>& chain, const T* q,
+                                    const T* scale, T* slope, T (*H)[kMaxJoints]) {
+  // Multipliers one after the other (Hildreth): a joint held at its own limit comes free where a
+  // row pushes it inside.
+  constexpr int kRounds = 4;
+  constexpr NumberOf<T> kSteep = 100;
+  T multiplier[kMostSums];
+  for (int round = 0; round < kRounds; ++round) {
+    for (int r = 0; r < chain.sums; ++r) {
+      const auto& row = chain.sum[r];
+      const T sum = sum_of(chain, r, q);
+      const T least = select(sum >= T(row.high), T(-1e30), T(0.0));
+      const T most = select(sum <= T(row.low), T(1e30), T(0.0));
+      if (round == 0) multiplier[r] = T(0.0);
+      if (!any(least < most)) continue;
+      T along = T(0.0);
+      T norm2 = T(0.0);
+      for (int j = 0; j < chain.n; ++j) {
+        const auto& variable = chain.variable[j];
+        const auto is_held = ((q[j] <= T(variable.lower)) & (slope[j] > T(0.0))) |
+                             ((q[j] >= T(variable.upper)) & (slope[j] < T(0.0)));
+        const T c = select(is_held, T(0.0), T(row.c[j]));
+        along = along + c * slope[j] / (scale[j] + T(1e-9));
+        norm2 = norm2 + c * c / (scale[j] + T(1e-9));
+      }
+      const T ideal = multiplier[r] + along / max(norm2, T(row.least_norm2));
+      const T change = min(max(ideal, least), most) - multiplier[r];
+      multiplier[r] = multiplier[r] + change;
+      for (int j = 0; j < chain.n; ++j) slope[j] = slope[j] - change * T(row.c[j]);
+    }
+  }
+  for (int r = 0; r < chain.sums; ++r) {
+    const auto& row = chain.sum[r];
+    T weighted = T(0.0);
+    T size2 = T(0.0);
+    for (int j = 0; j < chain.n; ++j) {
+      weighted = weighted + scale[j] * T(row.c[j]) * T(row.c[j]);
+      size2 = size2 + T(row.c[j]) * T(row.c[j]);
+    }
+    const T steep = T(kSteep) * weighted / (size2 * size2);
+    const T held = select(abs(multiplier[r]) > T(0.0), steep, T(0.0));
+    for (int j = 0; j < chain.n; ++j) {
+      for (int i = 0; i <= j; ++i) H[j][i] = H[j][i] + held * T(row.c[j]) * T(row.c[i]);
     }
   }
 }

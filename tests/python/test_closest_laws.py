@@ -154,6 +154,9 @@ ASKED = {
     "pose": (0, None),
     "two sums": (2, None),
     "four sums": (4, None),
+    "planar": (0, iksel.Task.planar()),
+    "twist": (0, iksel.Task.box((0, 0, 0), (np.pi, np.pi, 0))),
+    "box": (0, iksel.Task.box((0.05, 0.05, 0), (0.1, 1.5, np.pi))),
 }
 
 

@@ -23,6 +23,9 @@ constexpr float kAlmost = 3e-4F;
 constexpr float kSingle = 2e-6F;
 constexpr int kAlmostDescents = 8;
 constexpr std::size_t kSweptDescents = 2;
+/// At random, of tasks that the screen does not measure: tests/python/test_closest_laws.py. Without
+/// them 28 of 242 answers were more than 1 % farther than 100 descents come.
+constexpr int kBesideScreen = 24;
 /// Remainders that differ by less, relative to them, are the same.
 constexpr double kSameRemainder = 1e-6;
 
@@ -134,12 +137,13 @@ void give_closest(const SolverOptions& options, const Goal& goal, const SolveReq
   if (request.near) minima.descend(*request.near);
   const auto given = std::min(request.seeds.size(), static_cast<std::size_t>(options.max_attempts));
   for (std::size_t i = 0; i < given; ++i) minima.descend(request.seeds[i]);
+  int at_random = request.database_seeds ? kRandomDescents : 0;
   if (request.database_seeds && workspace.lanes) {
     descend_from_screen(goal, weights, *workspace.lanes, minima, result);
-  } else if (request.database_seeds) {
-    Random random(options.seed);
-    for (int i = 0; i < kRandomDescents; ++i) minima.descend(goal.joints().sample(random));
+    at_random = workspace.lanes->closest.is_measured() ? 0 : kBesideScreen;
   }
+  Random random(options.seed);
+  for (int i = 0; i < at_random; ++i) minima.descend(goal.joints().sample(random));
   Screen screen(request, goal.robot().dof);
   for (const LocalMinimum& minimum : minima.sorted()) {
     bool keep = true;

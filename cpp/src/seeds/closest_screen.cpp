@@ -152,6 +152,11 @@ void ClosestScreen::keep(int packs) {
 
 void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& query) {
   const Vector6 counts = goal.task().without_free(weights).cwiseAbs2();
+  const int twist = goal.task().twist_axis();
+  const bool counts_twist = twist >= 0 && counts[3 + twist] > 0;
+  is_measured_ =
+      !counts_twist &&
+      (counts.array() == 0 || goal.task().lower().array() == goal.task().upper().array()).all();
   use_length(counts);
   query.set_target(query.reduce(goal.nearest_pose()));
   int packs = load_seeds(query);

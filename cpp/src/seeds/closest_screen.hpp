@@ -23,6 +23,9 @@ class ClosestScreen {
   /// target, and at random. `weights` [1/m, 1/rad] as of PoseWeights. Of a task with widths, packs
   /// of seeds head for different poses that it allows.
   void find(const Goal& goal, const Vector6& weights, LaneQuery& query);
+  /// False where lanes only came near to what the goal measures, and may be led astray: of a twist,
+  /// which a trace does not see beside a swing by half a turn, and of tasks with widths.
+  [[nodiscard]] bool is_measured() const { return is_measured_; }
   /// How many there are.
   [[nodiscard]] static int size() { return lanes::kBlock; }
   [[nodiscard]] JointVector q(int i) const;
@@ -70,6 +73,7 @@ class ClosestScreen {
   std::vector<float> packs_, kept_;                           ///< [rad or length_]
   std::vector<lanes::ClosestTarget> targets_, kept_targets_;  ///< of each pack
   std::vector<Seed> seeds_;
+  bool is_measured_ = true;
 };
 
 }  // namespace iksel

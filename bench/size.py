@@ -39,13 +39,13 @@ class Size:
     """Targets that are restarted a thousand times each."""
     no: int = 5_000
     """Targets of each kind for the noes, and what goes with them."""
-    no_slow: int = 50
+    no_slow: int = 40
     """The same for slow solvers, which may take a tenth of a second for a no."""
     no_seed: int = SEED
     """Their seed."""
     analytic: int = 500
     """Targets of each kind for solvers that enumerate."""
-    analytic_s: float = 0.25
+    analytic_s: float = 0.2
     """Time after which none of them is begun any more, in each way to ask [s]."""
     tail_calls: int = 1_000_000
     """Reachable targets whose single calls are looked at one by one."""

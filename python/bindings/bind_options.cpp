@@ -16,6 +16,20 @@ Strategy by_name(const std::string& text, const char* name) {
                              "'; there are: " + kLanes + ", " + kPaper);
 }
 
+/// Before the options, one of which is a task.
+void bind_task(py::module_& m) {
+  auto cls = bind_keyword_class<Task>(m, /*writable=*/false);
+  def_static(cls, "pose", "", fn<&Task::pose>);
+  def_static(cls, "position_only", "", fn<&Task::position_only>);
+  def_static(cls, "free_spin", "axis='z'", fn<&Task::free_spin>);
+  def_static(cls, "upright", "axis='z'", fn<&Task::upright>);
+  def_static(cls, "planar", "normal='z'", fn<&Task::planar>);
+  def_static(cls, "box", "position, rotation, frame='tool'", fn<&Task::box>);
+  add_properties(cls, "is_full_pose", &Task::is_full_pose, "constrained_axes",
+                 &Task::constrained_axes);
+  def(cls, "__hash__", "", [](const Task& self) { return py::hash(py::str(to_repr(self))); });
+}
+
 }  // namespace
 
 Strategy FromPython<Strategy>::convert(py::handle value, const char* name) {
@@ -52,7 +66,8 @@ py::object ValueOf<Strategy>::to_plain(const Strategy& value) {
 
 void bind_options(py::module_& m) {
   bind_enums<Sampling, Scale, KeyScheme, RotationKey, Ranking, RotationDifference, Iteration,
-             Reselection, GrowthStop>(m);
+             Reselection, GrowthStop, TaskFrame, Axis>(m);
+  bind_task(m);
 
   auto database = bind_keyword_class<DatabaseOptions>(m, /*writable=*/true);
   def_static(database, "paper", "year=2025", fn<&DatabaseOptions::paper>);

@@ -2,7 +2,7 @@
 #include "angle_warning.hpp"
 #include "bindings.hpp"
 #include "callables.hpp"
-#include "request_keywords.hpp"
+#include "keywords.hpp"
 
 namespace iksel::python {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
-#include "py_batch.hpp"
-#include "request_keywords.hpp"
+#include "keywords.hpp"
 
 namespace iksel::python {
 
@@ -128,15 +127,14 @@ void bind_requests(py::module_& m, py::class_<Solver>& cls) {
   def_method<SolveRequest>(
       cls,
       {"solve",
-       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a "
-       "pose, or the "
-       "TCP of each tip at its own.",
+       "Joint values that put the TCP (the tip link's frame, if there is no tool) at a pose, or "
+       "the TCP of each tip at its own.",
        "pose",
-       "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) "
-       "matrix or a scipy Rotation; an object with as_matrix(), .homogeneous or .A "
-       "(scipy, Pinocchio, spatialmath); (3,) if the task leaves the rotation free. One "
-       "that is rounded stands for the nearest rigid one (see check_pose), by which the "
-       "errors are measured. Of several tips, (k, 4, 4) or k of these.",
+       "T_base_tip [m]: (4, 4) or (3, 4); a pair (position, rotation) with a (3, 3) matrix or a "
+       "scipy Rotation; an object with as_matrix(), .homogeneous or .A (scipy, Pinocchio, "
+       "spatialmath); (3,) if the task leaves the rotation free. One that is rounded stands for "
+       "the nearest rigid one (see check_pose), by which the errors are measured. Of several "
+       "tips, (k, 4, 4) or k of these.",
        R"(Returns:
     A Result. A pose that cannot be solved is no error but a status, and `proof` says how certain
     that is.
@@ -151,8 +149,8 @@ Raises:
   def_method<SolveAllOptions, SolveRequest>(
       cls,
       {"solve_all",
-       "Every distinct solution that is found: all branches (there certainly are no "
-       "others where `proven` says so), or a spread for a redundant arm.",
+       "Every distinct solution that is found: all branches (there certainly are no others where "
+       "`proven` says so), or a spread for a redundant arm.",
        "pose", "T_base_tip [m], as in solve.",
        R"(Returns:
     Solutions; empty, with a status that says why, if there is none.

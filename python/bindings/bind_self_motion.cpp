@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
-#include "py_batch.hpp"
 
 namespace iksel::python {
 

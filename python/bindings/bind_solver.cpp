@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "angle_warning.hpp"
 #include "bindings.hpp"
-#include "py_batch.hpp"
-#include "request_keywords.hpp"
+#include "keywords.hpp"
 
 namespace iksel::python {
 
@@ -148,8 +147,7 @@ void bind_properties(py::class_<Solver>& cls) {
         return std::make_pair(deviation.position, deviation.rotation);
       },
       "The largest difference between the robot's tip link and `nominal`'s at the same joint "
-      "values "
-      "over 2000 configurations: (position [m], rotation [rad]).");
+      "values over 2000 configurations: (position [m], rotation [rad]).");
   add_property(cls, "robot", &Solver::robot);
   add_property(cls, "options", [](const Solver& self) { return self.options(); });
   add_property(cls, "database", &Solver::database);

@@ -17,17 +17,12 @@ namespace iksel::python {
 void bind_errors(py::module_& m);
 void bind_link_tree(py::module_& m);
 void bind_pose(py::module_& m);
-/// To come before the robot, one of whose properties it is.
-void bind_structure(py::module_& m);
-void bind_coupled_limit(py::module_& m);
 void bind_mimic_curve(py::module_& m);
 void bind_robot(py::module_& m);
 /// Robot.from_dh.
 void bind_dh(py::module_& m, py::class_<Robot>& robot);
 /// The methods of Robot that compute poses and Jacobians.
 void bind_kinematics(py::class_<Robot>& robot);
-/// To come before the options, one of which is a task.
-void bind_task(py::module_& m);
 void bind_options(py::module_& m);
 void bind_database(py::module_& m);
 /// To come before the diagnosis, which names contacts.

@@ -86,8 +86,7 @@ struct CollectedCallables {
   /// with the lock held, so never while garbage is collected.
   static std::vector<py::object*> own(PyObject* self) {
     std::vector<py::object*> found;
-    auto* const instance = reinterpret_cast<py::detail::instance*>(self);
-    if (!instance->get_value_and_holder().holder_constructed()) return found;
+    if (is_unmade(self)) return found;
     for (const auto& callable : callables_of(objective_of(py::cast<const T&>(py::handle(self))))) {
       constexpr int kHereAndInSelf = 2;
       if (callable.use_count() == kHereAndInSelf) found.push_back(callable.get());

@@ -22,8 +22,7 @@ namespace iksel::python {
 /// Whether this thread has the lock; to be asked at any time, also when there is no Python any
 /// more.
 inline bool has_lock() {
-  const PyThreadState* own = PyGILState_GetThisThreadState();
-  return own != nullptr && own == py::detail::get_thread_state_unchecked();
+  return PyGILState_GetThisThreadState() != nullptr && PyGILState_Check() == 1;
 }
 
 /// function(), which asks for the lock; does not return if Python ends this thread, or has ended:

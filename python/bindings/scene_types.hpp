@@ -111,10 +111,4 @@ struct FromPython<Place> {
   static Place convert(py::handle value, const char* name);
 };
 
-// Parts of a module with scenes.
-
-void bind_robot_spheres(py::module_& m);
-/// The methods that add obstacles.
-void bind_obstacles(py::class_<Scene>& scene);
-
 }  // namespace iksel::python

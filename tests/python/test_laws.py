@@ -568,6 +568,12 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         *(("shoulder_offset", 610057, 156), ("shoulder_elbow_offset", 610025, 163)),
         *(("shoulder_offset", 630040, 147), ("shoulder_elbow_offset", 630054, 13)),
         *(("wrist_offset", 620042, 95, 0.15), ("shoulder_offset", 640021, 53, 0.15)),
+        # At its two ends it is another angle that there is none of.
+        *(("shoulder_elbow_offset", 880007, 76), ("shoulder_elbow_offset", 880018, 29)),
+        ("shoulder_elbow_offset", 882051, 188),
+        # Beside a fold the wrist is all but straight, and passes that.
+        *(("shoulder_elbow_offset", 881091, 59), ("shoulder_offset", 883025, 102)),
+        *(("shoulder_elbow_offset", 883023, 142), ("wrist_offset", 884043, 71)),
         # The elbow is all but straight: from sample to sample joints turn farther than
         # the move is long.
         *(("wrist_offset", 620053, 40, 0.15), ("srs", 640054, 83, 0.15)),

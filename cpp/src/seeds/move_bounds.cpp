@@ -71,12 +71,25 @@ bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
   // A joint turns as far beyond two points as from one point to the next (python -m bench moves),
   // and where the branch ends as the root of how far that exists.
   const double at_end = std::sqrt(std::max(a.least, b.least));
-  const auto beyond = [&](std::size_t i, double /*turn*/) {
+  const auto turns_beyond = [&](std::size_t i) {
     const double turned = most([&](const BranchPoint& from, const BranchPoint& to) {
       const double one = std::abs(turn(i, from.q[i], to.q[i]));
       return std::isnan(one) ? 0.0 : one;
     });
     return turned + at_end;
+  };
+  // Where a branch ends as axes 4 and 6 are all but in line, their joints turn against each other
+  // by any angle.
+  const auto may_be_straight = [&] {
+    const double bent = a.q[4] - straight_;
+    const double bends = turn(4, a.q[4], b.q[4]);
+    const double around = turns_beyond(4);
+    return std::floor((bent + std::max(bends, 0.0) + around) / kPi) >
+           std::floor((bent + std::min(bends, 0.0) - around) / kPi);
+  };
+  const bool is_straight = a.exists() != b.exists() && may_be_straight();
+  const auto beyond = [&](std::size_t i, double /*turn*/) {
+    return is_straight && (i == 3 || i == 5) ? kPi : turns_beyond(i);
   };
   return between(a, b, beyond, best - kTooLittle).move < kInfinity;
 }

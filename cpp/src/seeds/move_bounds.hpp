@@ -34,7 +34,9 @@ class MoveBounds {
  public:
   using Joints = std::array<double, 7>;
 
-  explicit MoveBounds(const lanes::MoveForm& form) : form_(form) {}
+  /// `straight`: where joint 5 turns axes 4 and 6 into one line, as it does half a turn from there;
+  /// NaN: nowhere [rad].
+  MoveBounds(const lanes::MoveForm& form, double straight) : form_(form), straight_(straight) {}
 
   /// Joints turn far that turn by more [rad], and by more than so many times what the swept one
   /// does.
@@ -164,6 +166,7 @@ class MoveBounds {
   };
 
   const lanes::MoveForm& form_;
+  double straight_;
 };
 
 }  // namespace iksel

@@ -45,14 +45,28 @@ std::uint64_t NearestOnCurve::find_loops(int branch) const {
     const double* at = &far[static_cast<std::size_t>(__builtin_ctzll(both))];
     const double a = at[1];
     const double b = at[2];
-    // It comes nearest to being at the one or the other.
-    if (a < b ? at[3] > b : at[0] > a) continue;
+    // It comes nearest to being at the one or the other; unless another angle is what there is none
+    // of there: a straight line by the two on the other side then leads to where there is one.
+    const int place = __builtin_ctzll(both);
+    const bool is_beside = a < b ? at[3] > b : at[0] > a;
+    const bool leads_there = a < b ? 2 * a >= at[0] : 2 * b >= at[3];
+    if (is_beside && !(leads_there && lacks_another(place, branch))) continue;
     double rise = std::abs(b - a);
     if (a - at[0] > rise) rise = a - at[0];
     if (b - at[3] > rise) rise = b - at[3];
     if (MoveBounds::may_be_between(a, b, rise)) loops |= both & (~both + 1);
   }
   return loops;
+}
+
+bool NearestOnCurve::lacks_another(int place, int branch) const {
+  const auto lack_same = [&](int at, int other) {
+    return point(at, other).least == point(at, branch).least;
+  };
+  for (int other = 0; other < lanes::kWidth; ++other) {
+    if (lack_same(place - 1, other) != lack_same(place, other)) return true;
+  }
+  return false;
 }
 
 template <typename Places>

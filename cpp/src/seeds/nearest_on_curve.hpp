@@ -126,7 +126,7 @@ class NearestOnCurve {
     const SamplePack& pack = packs_[static_cast<std::size_t>(at / lanes::kWidth)];
     return branches_.point(places_.value(at), pack.branch[branch], at % lanes::kWidth);
   }
-  [[nodiscard]] MoveBounds bounds() const { return MoveBounds(branches_.move_form()); }
+  [[nodiscard]] MoveBounds bounds() const { return branches_.bounds(); }
   [[nodiscard]] bool exists(int place, int branch) const {
     const int at = places_.find(place);
     return at >= 0 && (exist_[static_cast<std::size_t>(branch)] >> at & 1U) != 0;
@@ -163,6 +163,9 @@ class NearestOnCurve {
   }
   /// The samples between which and those before a branch that is at neither may be, as bits.
   [[nodiscard]] std::uint64_t find_loops(int branch) const;
+  /// Whether the angle that there is none of at a place is not that at the one before: other
+  /// branches lack the same at one of them only.
+  [[nodiscard]] bool lacks_another(int place, int branch) const;
   /// The samples from which to the next a joint stays beyond the same limit, as bits.
   [[nodiscard]] std::uint64_t find_staying(int branch) const;
   /// Looks for the least moves in a span, at its nodes, and between these where there may be

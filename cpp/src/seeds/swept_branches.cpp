@@ -17,6 +17,11 @@ SweptBranches::SweptBranches(const ChainModel& model, const ClosedFormChain& cha
       offset_(model.kernel.joints[static_cast<std::size_t>(chain.held)].offset),
       turns_(model.joints.is_periodic(chain.held)) {
   chain_.use_limits(model);
+  const lanes::Turned& wrist = chain_.form.wrist;
+  const bool has_wrist = chain_.form.closure != lanes::Closure::three_parallel;
+  if (has_wrist && std::abs(wrist.c) + std::sqrt(wrist.r2) > 1 - kRounding) {
+    straight_ = std::atan2(wrist.b, wrist.a) - chain_.form.offset[4];
+  }
 }
 
 Places SweptBranches::places(int count) const {

@@ -98,7 +98,7 @@ class SweptBranches {
 
   /// From now on, the moves from `near` are measured to all that is solved [rad].
   void measure_moves_from(const JointVector& near, const JointMove& move);
-  [[nodiscard]] const lanes::MoveForm& move_form() const { return move_form_; }
+  [[nodiscard]] MoveBounds bounds() const { return {move_form_, straight_}; }
   /// What was measured of a branch at a value of the swept joint.
   [[nodiscard]] BranchPoint point(double swept, const lanes::BranchRow& row, int lane) const {
     return make_point(swept + offset_, row.q, row.least[lane], row.moves, lane);
@@ -171,6 +171,7 @@ class SweptBranches {
   const lanes::BranchPack* last_ = &all_;
   bool measures_moves_ = false;
   lanes::MoveForm move_form_{};
+  double straight_ = lanes::kUnknown;  ///< as MoveBounds has it
   lanes::MovePack moves_{};
 };
 

@@ -54,7 +54,7 @@ TEST_P(FoldPartners, TheOtherOfAPairIsWhereSecondOrderPutsIt) {
     const double sigma = (J * v).norm();
     // Inverse iteration takes three steps: nearly equal ones are not told apart.
     if (sigma > 0.1 * (J * least_direction(J, &v)).norm() || sigma < 1e-6) continue;
-    const auto around = iksel::find_fold_partner(J, at, 0);
+    const auto around = iksel::find_fold_partner(robot.model(), J, at, 0);
     const Eigen::VectorXd u = J * v / sigma;
     const JointVector ahead = at + kStep * v;
     const JointVector behind = at - kStep * v;

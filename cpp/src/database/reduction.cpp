@@ -11,6 +11,10 @@ namespace {
 
 using lanes::Side;
 
+/// A point so near to the first axis, as a part of the weight of rotations, is on it: rounding
+/// leaves no more.
+constexpr double kOnAxis = 1e-9;
+
 /// Of the first joint or the last, if a variable moves it and no other.
 Side side_of(const ChainModel& model, const KernelJoint& joint, int variable) {
   const auto& joints = model.kernel.joints;
@@ -39,7 +43,7 @@ lanes::SeedChain make_seed_chain(const ChainModel& model, const Reduction& reduc
     seeds.lower[j] = static_cast<float>(variable.lower);
     seeds.upper[j] = static_cast<float>(variable.upper);
     seeds.middle[j] = static_cast<float>(0.5 * (variable.lower + variable.upper));
-    seeds.wraps[j] = !model.joints.is_slide(j);
+    seeds.wraps[j] = model.joints.repeats[static_cast<std::size_t>(j)];
   }
   return seeds;
 }
@@ -99,10 +103,18 @@ void Reduction::make_key(const Pose& Y, double* key) const {
   if (right == Side::translation) point -= point.dot(axis) * axis;
   double c = 1;
   double s = 0;
-  const double rho = std::sqrt(point[0] * point[0] + point[1] * point[1]);
-  if (left == Side::rotation && rho > 1e-12) {
-    c = point[0] / rho;
-    s = point[1] / rho;
+  const auto off_axis = [](const Eigen::Vector3d& v) {
+    return std::sqrt(v[0] * v[0] + v[1] * v[1]);
+  };
+  const double rho = off_axis(point);
+  // A point on the first axis has no direction about it: then that of the last axis, so that poses
+  // that differ by the first joint only have one key still.
+  const bool is_on_axis = rho <= kOnAxis * weight;
+  const Eigen::Vector3d& about = is_on_axis ? axis : point;
+  const double length = is_on_axis ? off_axis(axis) : rho;
+  if (left == Side::rotation && length > 0) {
+    c = about[0] / length;
+    s = about[1] / length;
   }
   int k = 0;
   const auto push_axis = [&](const Eigen::Vector3d& v) {

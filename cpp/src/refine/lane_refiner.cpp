@@ -23,7 +23,8 @@ lanes::LaneOptions make_lane_options(const ChainModel& model, const SolverOption
   // The error after a Newton step is about half the second derivative of FK times the squared step;
   // that derivative is at most the reach for positions and 1 for rotations, and mostly less.
   lanes.last_step2 = std::min(position / std::max(model.reach / model.unit, 1e-3), rotation);
-  lanes.last_error2 = 16 * lanes.last_step2;
+  // Nor is a lane that is there already to wait for an error as small as that.
+  lanes.last_error2 = std::max(16 * lanes.last_step2, position * position + rotation * rotation);
   return lanes;
 }
 

@@ -180,7 +180,8 @@ bool Collector::is_singular(const JointVector& q) const {
 
 void Collector::look_for_partner(const Jacobian& J, const JointVector& q) {
   // Of a pair that counts as one, the other may lie on the side of a limit where `near` is.
-  FoldPartner partner = find_fold_partner(J, q, request_.near ? 0.0 : aim_.min_distance);
+  FoldPartner partner =
+      find_fold_partner(goal_.model(), J, q, request_.near ? 0.0 : aim_.min_distance);
   if (partner.paired && partners_.size() < partners_.capacity()) {
     partners_.push_back(std::move(partner.other));
   }

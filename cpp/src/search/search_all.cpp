@@ -65,8 +65,7 @@ void search_widely(const AllSearch& parts) {
   Workspace::InLanes& lanes = *parts.workspace.lanes;
   Collector& answers = parts.answers;
   lanes.refiner.begin(parts.goal.task(), kAll, Width::wide);
-  if (parts.model.dof > kCurveJoints && answers.ranks_by_move() &&
-      !parts.request.objective.is_set()) {
+  if (parts.model.dof > kCurveJoints && answers.ranks_by_move()) {
     const std::vector<double> q =
         sample_around(answers.nearest_to().from, parts.options.seed, kNearby);
     RowSeeds nearby(q.data(), kNearby, answers.nearest_to().from.size(), /*are_answers=*/false,

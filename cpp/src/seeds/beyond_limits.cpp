@@ -90,7 +90,7 @@ bool is_beyond_limits(const ChainModel& model, const Pose& T_base_tcp, JointVect
     is_beyond = is_beyond || (!model.joints.is_periodic(j) && violations[j] > moved[j]);
   }
   if (!is_beyond || !and_partner) return is_beyond;
-  const FoldPartner partner = find_fold_partner(J, q, 0);
+  const FoldPartner partner = find_fold_partner(model, J, q, 0);
   return !partner.paired ||
          is_beyond_limits(model, T_base_tcp, partner.other, position_tolerance, rotation_tolerance);
 }

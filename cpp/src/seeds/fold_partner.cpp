@@ -31,11 +31,14 @@ Vector6 acceleration(const Jacobian& J, const Vector6& v, const Vector6& twist) 
 
 }  // namespace
 
-FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double nearest) {
-  /// Farthest that the second-order guess is of use [rad or m].
+FoldPartner find_fold_partner(const ChainModel& model, Jacobian J, const JointVector& q,
+                              double nearest) {
+  /// Farthest that the second-order guess is of use [rad or units].
   constexpr double kFarthest = 1.5;
   FoldPartner result;
   const auto dof = static_cast<int>(J.cols());
+  // Else what slides and what turns could not be compared, where lengths are millimetres.
+  model.to_unit(J);
 
   // Joints that are not there are of no consequence: they have zeros, and ones on the diagonal.
   double columns[kPoseJoints][kPoseJoints] = {};
@@ -68,8 +71,10 @@ FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double ne
   if (!(sigma > 0)) return result;
   const double kappa = twist.dot(acceleration(J, v, twist)) / sigma;
   const double t = -2 * sigma / kappa;
-  result.paired = std::abs(t) <= kFarthest && std::abs(t) * v.cwiseAbs().maxCoeff() >= nearest;
-  if (result.paired) result.other = q + t * v.head(dof);
+  JointVector move = t * v.head(dof);
+  for (int j = 0; j < dof; ++j) move[j] *= model.joints.is_slide(j) ? model.unit : 1;
+  result.paired = std::abs(t) <= kFarthest && move.cwiseAbs().maxCoeff() >= nearest;
+  if (result.paired) result.other = q + move;
   return result;
 }
 

@@ -15,8 +15,9 @@ struct FoldPartner {
   JointVector other;
 };
 
-/// `J` is the Jacobian at the solution q. `nearest`: a pair nearer than this in every joint counts
-/// as one solution.
-FoldPartner find_fold_partner(const Jacobian& J, const JointVector& q, double nearest);
+/// `J` is the Jacobian of the chain at the solution q. `nearest`: a pair nearer than this in every
+/// joint counts as one solution [rad or m].
+FoldPartner find_fold_partner(const ChainModel& model, Jacobian J, const JointVector& q,
+                              double nearest);
 
 }  // namespace iksel

@@ -136,3 +136,33 @@ def test_nearest_to_a_posture_is_nearest_to_a_configuration() -> None:
             where = f"arm {number}, {posture.tolist()}"
             move = np.linalg.norm(best.q - posture)
             assert move < near.move + 0.02, where
+
+
+@pytest.mark.parametrize("joints", [3, 4, 5])
+@pytest.mark.parametrize("tolerances", [(1e-3, 1e-3), (1e-4, 1e-3), (1e-3, 1e-4)])
+def test_few_joints_use_both_tolerances(
+    joints: int, tolerances: tuple[float, float]
+) -> None:
+    """Off by less than both, a pose has an answer, where none has the least error."""
+    position, rotation = tolerances
+    options = iksel.SolverOptions(
+        position_tolerance=position, rotation_tolerance=rotation
+    )
+    rng = np.random.default_rng([SEED, joints])
+    for number in range(SEED, SEED + ARMS):
+        general = random_arms.sketch("general", number)
+        robot = robot_of(replace(general, joints=general.joints[:joints]))
+        solver = iksel.Solver(robot, options)
+        poses = robot.fk(robot.random_configurations(POSES, number))
+        for pose in poses:
+            off, turn = (
+                each / np.linalg.norm(each) for each in rng.normal(size=(2, 3))
+            )
+            pose[:3, 3] += 0.5 * position * off
+            turned = iksel.pose_from_euler([0, 0, 0], 0.25 * rotation * turn)
+            pose[:3, :3] = turned[:3, :3] @ pose[:3, :3]
+            where = f"arm {number}, pose {pose.tolist()}"
+            assert solver.solve(pose), where
+            assert solver.solve_all(pose), where
+            assert solver.solve(pose, near=robot.lower.clip(-3, 3)), where
+        assert solver.solve_batch(poses).solved == POSES, number

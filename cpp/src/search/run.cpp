@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
+#include "refine/best_effort.hpp"
 #include "refine/iterate.hpp"
 #include "refine/single_refiner.hpp"
 #include "search/explore.hpp"
@@ -127,6 +128,15 @@ Proof search_in_lanes(const Parts& parts) {
   return Proof::none;
 }
 
+/// Seeds come to rest where the errors of position and rotation are least together. With fewer
+/// joints than axes one may be more than its tolerance there, and not where the other is more.
+template <typename Answers>
+void descend_from_rest(Answers& answers) {
+  if (answers.rest() == nullptr || !answers.should_continue()) return;
+  JointVector q = *answers.rest();
+  if (descend_into_tolerances(answers.goal(), q)) answers.offer(0, q);
+}
+
 }  // namespace
 
 template <typename Answers>
@@ -138,7 +148,11 @@ Proof search_for(const SolverOptions& options, Answers& answers, Workspace& work
   }
   answers.work.begin_laps(times);
   const SearchParts<Answers> parts{options, workspace, answers};
-  if (workspace.lanes) return search_in_lanes(parts);
+  if (workspace.lanes) {
+    const Proof proof = search_in_lanes(parts);
+    if (proof == Proof::none && !answers.has_any()) descend_from_rest(answers);
+    return proof;
+  }
   if (search_by_scheme(parts)) answers.leave_limits();
   return Proof::none;
 }

@@ -2,6 +2,7 @@
 // What a search has come to so far, whichever answers it is for.
 #pragma once
 
+#include "base/constants.hpp"
 #include "base/work.hpp"
 #include "goal/goal.hpp"
 #include "iksel/request.hpp"
@@ -38,6 +39,25 @@ class SearchState {
     if (!result_.success()) result_.status = status;
   }
 
+  /// Whether it matters where seeds come to rest that are no answers: of the first so many.
+  [[nodiscard]] bool notes_rests() const {
+    return rests_ < kMostRests && goal_.is_overdetermined();
+  }
+  /// Notes one of them.
+  void note_rest(const JointVector& q, double position_error, double rotation_error) {
+    ++rests_;
+    const double position = position_error / goal_.task().position_tolerance();
+    const double rotation = rotation_error / goal_.task().rotation_tolerance();
+    const double off = position * position + rotation * rotation;
+    if (!(off < least_off_)) return;
+    least_off_ = off;
+    rest_ = q;
+  }
+  /// Of these the one that is least off, measured by the tolerances; null if there is none.
+  [[nodiscard]] const JointVector* rest() const {
+    return least_off_ < kInfinity ? &rest_ : nullptr;
+  }
+
   Work work;
 
  protected:
@@ -45,6 +65,14 @@ class SearchState {
   const SolveRequest& request_;
   Deadline deadline_;
   Result result_;
+
+ private:
+  /// They come to few places, and each again and again.
+  static constexpr int kMostRests = 256;
+
+  int rests_ = 0;
+  JointVector rest_;
+  double least_off_ = kInfinity;
 };
 
 }  // namespace iksel

@@ -60,7 +60,7 @@ class Goal {
   /// Whether one tip has fewer joints than axes fixed: then hardly any target is reached but by
   /// what the tolerances allow.
   [[nodiscard]] bool is_overdetermined() const {
-    return robot_.dof < kPoseJoints && tips_ == nullptr && robot_.dof < task_.fixed_axes();
+    return tips_ == nullptr && robot_.dof < task_.fixed_axes();
   }
   /// Whether the target, or one of them, is farther away than the links are long together.
   [[nodiscard]] bool is_out_of_reach() const;

@@ -1,63 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/run.hpp"
 
-#include "refine/best_effort.hpp"
 #include "refine/iterate.hpp"
 #include "refine/single_refiner.hpp"
 #include "search/explore.hpp"
-#include "seeds/random_seeds.hpp"
+#include "seeds/allowed_seeds.hpp"
 
 namespace iksel {
 namespace {
-
-/// Seeds for a task: samples near to poses that it allows, the pose nearest to the target first;
-/// between them configurations at random.
-/// `Samples` (lane_query.hpp, task_samples.hpp) has kPerPose, how many seeds a pose is good for;
-/// find(goal, pose, is_first), false where all near to it were tried; and load(rank, refiner,
-/// lane).
-template <typename Samples>
-class AllowedSeeds {
- public:
-  AllowedSeeds(Samples& samples, const Goal& goal, Random& random, Work& work)
-      : samples_(samples), goal_(goal), random_(random), work_(work) {}
-
-  bool next_stage() {
-    work_.lap(&StageTimes::iterate);
-    if (!work_.has_left()) return false;
-    at_random_ = stage_ % 4 == 3;
-    rank_ = 0;
-    if (!at_random_) {
-      const bool is_first = stage_ == 0;
-      // Some poses have the same samples: a spin about the last joint is not in a reduced key.
-      const Pose pose = is_first ? goal_.nearest_pose() : goal_.random_pose(random_);
-      at_random_ = !samples_.find(goal_, pose, is_first);
-    }
-    ++stage_;
-    work_.lap(&StageTimes::query);
-    return true;
-  }
-
-  template <typename Refiner>
-  bool load(Refiner& refiner, int lane) {
-    if (rank_ == Samples::kPerPose || !work_.take()) return false;
-    const int rank = rank_++;
-    if (at_random_) {
-      load_random(goal_.joints(), random_, refiner, lane);
-    } else {
-      samples_.load(rank, refiner, lane);
-    }
-    return true;
-  }
-
- private:
-  Samples& samples_;
-  const Goal& goal_;
-  Random& random_;
-  Work& work_;
-  int stage_ = 0;
-  bool at_random_ = false;
-  int rank_ = 0;
-};
 
 /// One seed at a time, by a scheme. Returns whether one reached the goal outside the limits.
 template <typename Parts>
@@ -128,15 +78,6 @@ Proof search_in_lanes(const Parts& parts) {
   return Proof::none;
 }
 
-/// Seeds come to rest where the errors of position and rotation are least together. With fewer
-/// joints than axes one may be more than its tolerance there, and not where the other is more.
-template <typename Answers>
-void descend_from_rest(Answers& answers) {
-  if (answers.rest() == nullptr || !answers.should_continue()) return;
-  JointVector q = *answers.rest();
-  if (descend_into_tolerances(answers.goal(), q)) answers.offer(0, q);
-}
-
 }  // namespace
 
 template <typename Answers>
@@ -150,7 +91,7 @@ Proof search_for(const SolverOptions& options, Answers& answers, Workspace& work
   const SearchParts<Answers> parts{options, workspace, answers};
   if (workspace.lanes) {
     const Proof proof = search_in_lanes(parts);
-    if (proof == Proof::none && !answers.has_any()) descend_from_rest(answers);
+    if (proof == Proof::none && !answers.has_any()) parts.descend_from_rest();
     return proof;
   }
   if (search_by_scheme(parts)) answers.leave_limits();

@@ -10,6 +10,7 @@
 
 #include "base/function_ref.hpp"
 #include "base/work.hpp"
+#include "refine/best_effort.hpp"
 #include "refine/lane_refiner.hpp"
 #include "search/context.hpp"
 #include "search/search.hpp"
@@ -95,6 +96,13 @@ struct SearchParts {
     }
     work.lap(&StageTimes::iterate);
     return is_satisfied;
+  }
+  /// Seeds come to rest where the errors of position and rotation are least together. With fewer
+  /// joints than axes one may be more than its tolerance there, and not where the other is more.
+  void descend_from_rest() const {
+    if (answers.rest() == nullptr || !answers.should_continue()) return;
+    JointVector q = *answers.rest();
+    if (descend_into_tolerances(goal, q)) answers.offer(0, q);
   }
 
  private:

@@ -123,71 +123,6 @@ class LinkTree:
         """
         The links without children, each with the number of joints that move it.
         """
-class StructureKind(enum.Enum):
-    """
-    How the solutions of a pose can be found.
-    """
-    closed_form = 0
-    searched = 2
-    swept = 1
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class Structure:
-    """
-    What follows from how the axes of a chain lie.
-    """
-    def __repr__(self) -> str:
-        ...
-    @property
-    def description(self) -> str:
-        """
-        Which axes, numbered from 1, are parallel or meet, or that none do that would help; a sentence without its full stop.
-        """
-    @property
-    def kind(self) -> StructureKind:
-        """
-        How the solutions of a pose can be found.
-        """
-class CoupledLimit:
-    """
-    A limit that joints share, as a parallel linkage or a cable makes it: lower <= sum of coefficient * joint value <= upper.
-    """
-    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
-    def __eq__(self, other: typing.Any) -> bool:
-        ...
-    def __init__(self, coefficients: collections.abc.Mapping[str, float], lower: float = ..., upper: float = ...) -> None:
-        """
-        Args:
-            coefficients: by joint name; not 0. Joints between base and tip, mimic and locked ones too,
-                but none that turns without limits.
-            lower: least value of the sum [rad or m].
-            upper: largest value of the sum [rad or m].
-
-        Raises:
-            InvalidArgumentError: not names and numbers. What is wrong with the limit of a robot, it says
-                when that is loaded.
-        """
-    def __repr__(self) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-    @property
-    def coefficients(self) -> dict[str, float]:
-        """
-        Coefficients by joint name; not 0. Joints between base and tip, mimic and locked ones too, but none that turns without limits.
-        """
-    @property
-    def lower(self) -> float:
-        """
-        Least value of the sum [rad or m].
-        """
-    @property
-    def upper(self) -> float:
-        """
-        Largest value [rad or m]; one of the two may be infinite.
-        """
 class MimicCurve:
     """
     A joint that follows another by a smooth curve, as a four-bar linkage or a cylinder beside a hinge makes it. It takes the place of the joint's mimic tag, which knows straight lines only.
@@ -276,6 +211,71 @@ class Kinematics(enum.Enum):
         ...
     def __str__(self) -> str:
         ...
+class StructureKind(enum.Enum):
+    """
+    How the solutions of a pose can be found.
+    """
+    closed_form = 0
+    searched = 2
+    swept = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Structure:
+    """
+    What follows from how the axes of a chain lie.
+    """
+    def __repr__(self) -> str:
+        ...
+    @property
+    def description(self) -> str:
+        """
+        Which axes, numbered from 1, are parallel or meet, or that none do that would help; a sentence without its full stop.
+        """
+    @property
+    def kind(self) -> StructureKind:
+        """
+        How the solutions of a pose can be found.
+        """
+class CoupledLimit:
+    """
+    A limit that joints share, as a parallel linkage or a cable makes it: lower <= sum of coefficient * joint value <= upper.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __init__(self, coefficients: collections.abc.Mapping[str, float], lower: float = ..., upper: float = ...) -> None:
+        """
+        Args:
+            coefficients: by joint name; not 0. Joints between base and tip, mimic and locked ones too,
+                but none that turns without limits.
+            lower: least value of the sum [rad or m].
+            upper: largest value of the sum [rad or m].
+
+        Raises:
+            InvalidArgumentError: not names and numbers. What is wrong with the limit of a robot, it says
+                when that is loaded.
+        """
+    def __repr__(self) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """
+        Coefficients by joint name; not 0. Joints between base and tip, mimic and locked ones too, but none that turns without limits.
+        """
+    @property
+    def lower(self) -> float:
+        """
+        Least value of the sum [rad or m].
+        """
+    @property
+    def upper(self) -> float:
+        """
+        Largest value [rad or m]; one of the two may be infinite.
+        """
 class Robot:
     """
     An immutable serial chain with its limits, or the chains from one base link to several tip links (RobotOptions.tip_links), joined: a joint that lies on several of them is one degree of freedom. Copies are cheap and share the data. Safe to use from many threads at once. What is about one tip raises InvalidArgumentError where there are several.
@@ -581,6 +581,109 @@ class DhConvention(enum.Enum):
         ...
     def __str__(self) -> str:
         ...
+class Sampling(enum.Enum):
+    """
+    How the joint samples of a database are spread over the limits.
+    """
+    cvt = 1
+    grid = 0
+    kmeans = 4
+    low_discrepancy = 2
+    random = 3
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Scale(enum.Enum):
+    """
+    Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").
+    """
+    large = 2
+    medium = 1
+    small = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class KeyScheme(enum.Enum):
+    """
+    What of a pose the database's key holds.
+    """
+    full = 0
+    reduced = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class RotationKey(enum.Enum):
+    """
+    How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
+    """
+    dual_quaternion = 4
+    euler = 3
+    matrix = 2
+    quaternion = 1
+    rotation_vector = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Ranking(enum.Enum):
+    """
+    How the neighbours of a target are put in order.
+    """
+    joint_adjustment = 1
+    nearest = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class RotationDifference(enum.Enum):
+    """
+    The rotation part of x_target - x_i in Eq. (4) of the paper.
+    """
+    geodesic = 1
+    rotation_vector = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Iteration(enum.Enum):
+    """
+    One scheme of numerical iteration (paper, Table II).
+    """
+    cwln = 3
+    cwpi = 4
+    dls = 0
+    lm = 5
+    pinv = 1
+    pinv_rr = 2
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class Reselection(enum.Enum):
+    """
+    Which seed follows a failed one.
+    """
+    farthest = 2
+    next = 1
+    none = 0
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
+class GrowthStop(enum.Enum):
+    """
+    Whether an attempt is given up when both errors have grown.
+    """
+    by_scheme = 0
+    off = 2
+    on = 1
+    def __format__(self, arg0: str) -> str:
+        ...
+    def __str__(self) -> str:
+        ...
 class TaskFrame(enum.Enum):
     """
     Axes that the tolerances of a task lie along.
@@ -713,109 +816,6 @@ class Task:
         """
         Bounds of the rotation's deviation about x, y, z [rad], in -pi .. pi, or both infinite: none.
         """
-class Sampling(enum.Enum):
-    """
-    How the joint samples of a database are spread over the limits.
-    """
-    cvt = 1
-    grid = 0
-    kmeans = 4
-    low_discrepancy = 2
-    random = 3
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class Scale(enum.Enum):
-    """
-    Size of a grid, and of other samplings whose `samples` is 0 (paper, Table "KDTree sizes").
-    """
-    large = 2
-    medium = 1
-    small = 0
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class KeyScheme(enum.Enum):
-    """
-    What of a pose the database's key holds.
-    """
-    full = 0
-    reduced = 1
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class RotationKey(enum.Enum):
-    """
-    How the KD-tree's key writes the rotation of a pose (paper, footnote 1).
-    """
-    dual_quaternion = 4
-    euler = 3
-    matrix = 2
-    quaternion = 1
-    rotation_vector = 0
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class Ranking(enum.Enum):
-    """
-    How the neighbours of a target are put in order.
-    """
-    joint_adjustment = 1
-    nearest = 0
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class RotationDifference(enum.Enum):
-    """
-    The rotation part of x_target - x_i in Eq. (4) of the paper.
-    """
-    geodesic = 1
-    rotation_vector = 0
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class Iteration(enum.Enum):
-    """
-    One scheme of numerical iteration (paper, Table II).
-    """
-    cwln = 3
-    cwpi = 4
-    dls = 0
-    lm = 5
-    pinv = 1
-    pinv_rr = 2
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class Reselection(enum.Enum):
-    """
-    Which seed follows a failed one.
-    """
-    farthest = 2
-    next = 1
-    none = 0
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
-class GrowthStop(enum.Enum):
-    """
-    Whether an attempt is given up when both errors have grown.
-    """
-    by_scheme = 0
-    off = 2
-    on = 1
-    def __format__(self, arg0: str) -> str:
-        ...
-    def __str__(self) -> str:
-        ...
 class DatabaseOptions:
     """
     How a database is built. Enums may be given by name, as in sampling='grid'.

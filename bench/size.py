@@ -39,7 +39,7 @@ class Size:
     """Targets that are restarted a thousand times each."""
     no: int = 5_000
     """Targets of each kind for the noes, and what goes with them."""
-    no_slow: int = 40
+    no_slow: int = 30
     """The same for slow solvers, which may take a tenth of a second for a no."""
     no_seed: int = SEED
     """Their seed."""
@@ -71,14 +71,14 @@ class Size:
 
 FULL = Size(
     paper=10_000,
-    figure=2_000,
+    figure=1_000,
     figure_attempts=(1, 2, 3, 5, 7, 10, 15, 20),
     cvt_scales=("small", "medium"),
     rivals={
         "uniform": 1_000,
-        "near_limits": 500,
-        "near_singular": 500,
-        "lines": 500,
+        "near_limits": 300,
+        "near_singular": 300,
+        "lines": 300,
         "unreachable": 20,
     },
     robots=100_000,

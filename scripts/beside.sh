@@ -4,6 +4,7 @@
 #
 # Usage: scripts/beside.sh COMMAND...    (each a line for bash)
 #
+# Tests take all processors, as much of them runs when the other commands have ended.
 # What a command prints is shown when it ends. Fails as soon as one fails, and ends the others.
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -13,7 +14,8 @@ esac
 
 share=$(($(nproc) / $#))
 export CMAKE_BUILD_PARALLEL_LEVEL=$((share > 0 ? share : 1))
-export CTEST_PARALLEL_LEVEL=$CMAKE_BUILD_PARALLEL_LEVEL
+CTEST_PARALLEL_LEVEL=$(nproc)
+export CTEST_PARALLEL_LEVEL
 
 mkdir -p build/beside
 declare -A commands=() logs=()

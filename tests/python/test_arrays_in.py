@@ -154,10 +154,13 @@ def test_non_finite_joints_are_named(robot, solver, joints, poses, bad):
 def test_empty_batches_are_fine(robot, solver):
     assert robot.fk(np.zeros((0, 6))).shape == (0, 4, 4)
     assert robot.jacobian(np.zeros((0, 6))).shape == (0, 6, 6)
-    batch = solver.solve_batch(np.zeros((0, 4, 4)))
-    assert len(batch) == 0
-    assert batch.q.shape == (0, 6)
-    assert repr(batch) == "BatchResult(0 of 0 solved)"
+    for nothing in (np.zeros((0, 4, 4)), [], ()):
+        batch = solver.solve_batch(nothing)
+        assert len(batch) == 0
+        assert batch.q.shape == (0, 6)
+        assert repr(batch) == "BatchResult(0 of 0 solved)"
+    with pytest.raises(core.InvalidArgumentError, match=r"^poses: there are none"):
+        solver.solve_path([])
 
 
 @pytest.mark.parametrize("threads", [-1, 10**6, 2**40])

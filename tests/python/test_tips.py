@@ -154,6 +154,7 @@ def test_what_cannot_be_reached_is_named(solver, targets) -> None:
     again = pickle.loads(pickle.dumps(batch))
     np.testing.assert_array_equal(again.unreachable_tip, batch.unreachable_tip)
     assert batch[0].status == iksel.Status.out_of_reach
+    assert solver.solve_batch([]).q.shape == (0, 14)
     with pytest.raises(iksel.InvalidArgumentError, match="ambiguous"):
         bool(batch)
 

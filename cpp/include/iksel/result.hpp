@@ -18,9 +18,10 @@ enum class Status : std::uint8_t {
   not_converged,   ///< no attempt reached the tolerances within the allowed work; Result::proof may
                    ///< say that none can
   outside_limits,  ///< attempts reached the target, but only with joints outside their limits
-  out_of_reach,  ///< the target's position is farther away than the arm is long; nothing was tried
-  rejected,      ///< attempts reached the target inside the limits, but the filter refused each
-  out_of_time,   ///< the deadline passed before an answer was found
+  out_of_reach,    ///< the target's position is farther away than the arm is long, or it is off in
+                   ///< what no joint moves, as the height of a planar arm is; nothing was tried
+  rejected,        ///< attempts reached the target inside the limits, but the filter refused each
+  out_of_time,     ///< the deadline passed before an answer was found
   too_fast,      ///< answers exist, but joints would have to move faster than their velocity limits
   invalid_pose,  ///< the target is no pose (check_pose); in batches only, solve throws
   closest,       ///< no answer, but the configuration nearest to one (SolveRequest::closest)
@@ -39,7 +40,8 @@ IKSEL_EXPORT const char* to_string(Status status);
 /// solutions that there are no others.
 enum class Proof : std::uint8_t {
   none,         ///< nothing does: no answer was found by a search
-  reach,        ///< the target lies farther away than the links are long together
+  reach,        ///< the target lies farther away than the links are long together, or is off in
+                ///< what no joint moves
   closed_form,  ///< all branches are known (find_structure), and no other lies inside the limits;
                 ///< of seven joints, all ends of curves of solutions, and there are none inside
   intervals,  ///< each branch was enclosed by interval arithmetic over the whole range of a joint,

@@ -87,6 +87,11 @@ Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> singular_values(
   return SquareSvd(square(J)).singularValues().head(std::min<Eigen::Index>(J.cols(), 6));
 }
 
+int rank_of(const JacobianMatrix& J) {
+  const auto sigma = singular_values(J);
+  return static_cast<int>((sigma.array() > 1e-4 * sigma[0]).count());
+}
+
 Vector6 solve_symmetric(const Matrix6& A, const Vector6& b) { return A.ldlt().solve(b); }
 
 PseudoInverse damped_inverse(const JacobianMatrix& J, double lambda) {

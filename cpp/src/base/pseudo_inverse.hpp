@@ -38,6 +38,10 @@ class TruncatedSvd {
 Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> singular_values(
     const JacobianMatrix& J);
 
+/// In how many directions a Jacobian moves the tip, lengths in the unit of the robot: in others
+/// files that are rounded do, or the tolerances would move joints by more than 0.01 rad.
+int rank_of(const JacobianMatrix& J);
+
 /// A^-1 b for a symmetric A.
 Vector6 solve_symmetric(const Matrix6& A, const Vector6& b);
 

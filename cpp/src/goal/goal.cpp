@@ -57,7 +57,10 @@ bool Goal::is_out_of_reach() const {
                                          : task_.distance_from(target_, model_.reach_centre);
   // What rounding leaves of a stretched arm's length, which is more than the tolerance of a huge
   // one.
-  return distance > (1 + kRounding) * model_.reach_of_tcp() + task_.position_tolerance();
+  if (distance > (1 + kRounding) * model_.reach_of_tcp() + task_.position_tolerance()) return true;
+  const Vector6 allowed = task_.lower().cwiseAbs().cwiseMax(task_.upper().cwiseAbs());
+  return model_.unmoved.excludes(target_, task_.position_tolerance() + allowed.head<3>().sum(),
+                                 task_.rotation_tolerance() + allowed.tail<3>().sum());
 }
 
 void Goal::measure(const JointVector& q, double& position, double& rotation,

@@ -57,12 +57,13 @@ class Goal {
   [[nodiscard]] bool is_redundant() const {
     return robot_.dof > (tips_ != nullptr ? tips_->fixed_axes() : task_.fixed_axes());
   }
-  /// Whether one tip has fewer joints than axes fixed: then hardly any target is reached but by
-  /// what the tolerances allow.
+  /// Whether the joints do not move the one tip along all axes: then hardly any target is reached
+  /// but by what the tolerances allow, unless the task leaves the other axes free.
   [[nodiscard]] bool is_overdetermined() const {
-    return tips_ == nullptr && robot_.dof < task_.fixed_axes();
+    return tips_ == nullptr && model_.rank < kPoseJoints;
   }
-  /// Whether the target, or one of them, is farther away than the links are long together.
+  /// Whether the target, or one of them, is farther away than the links are long together, or off
+  /// in what no joint moves.
   [[nodiscard]] bool is_out_of_reach() const;
 
   /// The errors of q, position [m] and rotation [rad], the largest of all tips; and for a full pose

@@ -159,6 +159,7 @@ std::shared_ptr<const ChainModel> ChainModel::without_limits() const {
     }
   }
   copy->measure_reach();
+  copy->measure_rank();
   return copy;
 }
 
@@ -225,6 +226,7 @@ void ChainModel::set_tool(const Pose& T_tip_tcp) {
   tcp = T_tip_tcp;
   tcp_inverse = T_tip_tcp.inverse();
   kernel.tip = to_frame(to_pose(kernel.flange) * T_tip_tcp);
+  measure_rank();
 }
 
 void ChainModel::measure_reach() {
@@ -241,6 +243,20 @@ void ChainModel::measure_reach() {
   reach += Eigen::Vector3d::Map(kernel.flange.p).norm();
   // Of 32, so that the reach is between 0.35 and 11.3 units.
   unit = reach > 0 ? std::exp2(5 * std::round(std::log2(reach / 2) / 5)) : 1;
+}
+
+void ChainModel::measure_rank() {
+  std::vector<Pose> poses;
+  rank = 0;
+  visit_configurations([&](const JointVector&, const Pose& pose, const Jacobian& J) {
+    if (rank == kPoseJoints) return;
+    poses.push_back(pose);
+    rank = std::max(rank, rank_of(J));
+  });
+  // A curve may stand still over what no configuration is in.
+  const bool has_curve = std::any_of(kernel.joints.begin(), kernel.joints.end(),
+                                     [](const KernelJoint& joint) { return joint.curve; });
+  unmoved = rank < kPoseJoints && !has_curve ? Unmoved(poses, unit) : Unmoved();
 }
 
 Pose ChainModel::fk(const double* q) const { return to_pose(forward(kernel, q)); }

@@ -10,13 +10,18 @@
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
 #include "iksel/robot.hpp"
 #include "kinematics/kdl_chain.hpp"
 #include "kinematics/kernel.hpp"
 #include "kinematics/robot_model.hpp"
+#include "kinematics/unmoved.hpp"
 #include "urdf/chain_spec.hpp"
 
 namespace iksel {
+
+/// Frame of the kernel as a pose.
+Pose to_pose(const Frame& frame);
 
 class ChainModel final : public RobotModel {
  public:
@@ -51,12 +56,32 @@ class ChainModel final : public RobotModel {
 
   [[nodiscard]] Jacobians jacobians(const double* q) const override;
 
+  /// So many random configurations inside the limits, always the same ones, tell what is so
+  /// everywhere.
+  static constexpr int kConfigurations = 24;
+  /// Visits each, with the TCP's pose and its Jacobian in the unit.
+  template <typename Visit>
+  void visit_configurations(const Visit& visit) const {
+    Random random(/*seed=*/8);
+    Jacobian J;
+    for (int i = 0; i < kConfigurations; ++i) {
+      const JointVector q = joints.sample(random);
+      const Pose pose = to_pose(fk_jacobian(q.data(), J));
+      to_unit(J);
+      visit(q, pose, J);
+    }
+  }
+
   ChainSpec spec;
   KernelChain kernel;
   /// T_tip_tcp and its inverse.
   StoredPose tcp, tcp_inverse;
   Eigen::Matrix<double, 3, 1, Eigen::DontAlign> reach_centre;
   double reach;
+  /// In how many directions of position and rotation the joints move the TCP, wherever they are.
+  int rank = 0;
+  /// What of its pose they do not move; nothing where that is not known.
+  Unmoved unmoved;
   /// Farthest that the TCP may be from reach_centre [m].
   [[nodiscard]] double reach_of_tcp() const { return reach + tcp.translation().norm(); }
 
@@ -64,6 +89,7 @@ class ChainModel final : public RobotModel {
   void flatten();
   void set_tool(const Pose& T_tip_tcp);
   void measure_reach();
+  void measure_rank();
   [[nodiscard]] std::uint64_t compute_hash() const;
 };
 
@@ -73,8 +99,5 @@ class ChainModel final : public RobotModel {
 /// UnknownNameError for a name that is no joint of the chain.
 void add_coupled_limits(const std::vector<CoupledLimit>& limits, const ChainSpec& spec,
                         JointSpace& joints);
-
-/// Frame of the kernel as a pose.
-Pose to_pose(const Frame& frame);
 
 }  // namespace iksel

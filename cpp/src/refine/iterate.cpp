@@ -18,15 +18,14 @@ void clamp_error(Vector6& e, double position, double rotation, const Paper& sche
   if (rotation > scheme.rotation_clamp) e.tail<3>() *= scheme.rotation_clamp / rotation;
 }
 
-bool stops_on_growth(const Paper& scheme) {
-  if (scheme.growth_stop != GrowthStop::by_scheme) return scheme.growth_stop == GrowthStop::on;
-  return scheme.iteration == Iteration::dls || scheme.iteration == Iteration::pinv ||
-         scheme.iteration == Iteration::pinv_rr;
-}
-
 bool stops_on_small_step(Iteration iteration) {
   return iteration == Iteration::dls || iteration == Iteration::pinv ||
          iteration == Iteration::pinv_rr || iteration == Iteration::cwpi;
+}
+
+bool stops_on_growth(const Paper& scheme) {
+  if (scheme.growth_stop != GrowthStop::by_scheme) return scheme.growth_stop == GrowthStop::on;
+  return scheme.iteration != Iteration::cwpi && stops_on_small_step(scheme.iteration);
 }
 
 /// What follows a step besides adding it.

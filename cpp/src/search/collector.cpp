@@ -60,7 +60,7 @@ Verdict Collector::offer(int /*lane*/, JointVector& q) {
   const bool pairs = comes_in_pairs_ && looks_for_partners_;
   goal_.measure(q, answer.position_error, answer.rotation_error, pairs ? &J : nullptr);
   if (!goal_.is_reached(answer.position_error, answer.rotation_error)) {
-    if (notes_rests()) note_rest(q, answer.position_error, answer.rotation_error);
+    note_rest(q);
     return Verdict::refine;
   }
   if (!model_.joints.contains(q.data())) {

@@ -111,8 +111,7 @@ SharedBySearches::SharedBySearches(const Robot& robot_in, const Robot& nominal_i
   if (!in_lanes) return;
   if (is_nominal()) held_arms = Held::arms_of(model);
   const auto& chain = closed_forms.pose;
-  has_curve =
-      !chain && robot.dof() == kCurveJoints && is_simple(model) && !is_singular_everywhere(model);
+  has_curve = !chain && model.dof == kCurveJoints && is_simple(model) && model.rank == kPoseJoints;
   if (has_arcs() || has_curve) locked_arms = LockedArms::of(model);
   if (!chain || chain->is_completed()) return;
   const bool proves = chain->held < 0 && is_nominal() && !chain->is_almost();

@@ -21,12 +21,7 @@ class FirstAnswer : public SearchState {
   Verdict offer(int /*lane*/, JointVector& q) {
     if (wraps_) goal_.joints().wrap(q.data());
     if (!goal_.check(q, result_)) {
-      if (notes_rests() && goal_.joints().contains(q.data())) {
-        double position = 0;
-        double rotation = 0;
-        goal_.measure(q, position, rotation);
-        note_rest(q, position, rotation);
-      }
+      note_rest(q);
       return Verdict::refine;
     }
     if (goal_.is_free(q)) return Verdict::stop;

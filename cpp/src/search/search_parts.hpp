@@ -97,8 +97,9 @@ struct SearchParts {
     work.lap(&StageTimes::iterate);
     return is_satisfied;
   }
-  /// Seeds come to rest where the errors of position and rotation are least together. With fewer
-  /// joints than axes one may be more than its tolerance there, and not where the other is more.
+  /// Seeds come to rest where the errors of position and rotation are least together. Where joints
+  /// do not move along all axes one may be more than its tolerance there, and not where the other
+  /// is more.
   void descend_from_rest() const {
     if (answers.rest() == nullptr || !answers.should_continue()) return;
     JointVector q = *answers.rest();

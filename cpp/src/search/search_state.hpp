@@ -2,6 +2,8 @@
 // What a search has come to so far, whichever answers it is for.
 #pragma once
 
+#include <cmath>
+
 #include "base/constants.hpp"
 #include "base/work.hpp"
 #include "goal/goal.hpp"
@@ -39,16 +41,17 @@ class SearchState {
     if (!result_.success()) result_.status = status;
   }
 
-  /// Whether it matters where seeds come to rest that are no answers: of the first so many.
-  [[nodiscard]] bool notes_rests() const {
-    return rests_ < kMostRests && goal_.is_overdetermined();
-  }
-  /// Notes one of them.
-  void note_rest(const JointVector& q, double position_error, double rotation_error) {
+  /// Notes where a seed came to rest that is no answer, if that matters: of the first so many.
+  void note_rest(const JointVector& q) {
+    if (rests_ == kMostRests || !goal_.is_overdetermined() || !goal_.joints().contains(q.data())) {
+      return;
+    }
     ++rests_;
-    const double position = position_error / goal_.task().position_tolerance();
-    const double rotation = rotation_error / goal_.task().rotation_tolerance();
-    const double off = position * position + rotation * rotation;
+    double position = 0;
+    double rotation = 0;
+    goal_.measure(q, position, rotation);
+    const double off = std::hypot(position / goal_.task().position_tolerance(),
+                                  rotation / goal_.task().rotation_tolerance());
     if (!(off < least_off_)) return;
     least_off_ = off;
     rest_ = q;

@@ -6,7 +6,7 @@
 #include "base/pseudo_inverse.hpp"
 #include "goal/task_space.hpp"
 #include "iksel/diagnosis.hpp"
-#include "iksel/robot.hpp"
+#include "kinematics/chain_model.hpp"
 
 namespace iksel {
 namespace {
@@ -35,21 +35,16 @@ std::array<NamedTask, 10> named_tasks() {
 bool fits(const Robot& robot, const Task& task) {
   if (robot.dof() < task.constrained_axes()) return false;
   const TaskSpace space(task, 0, 0);
-  const Matrix q = robot.random_configurations(10, 1);
-  for (Eigen::Index row = 0; row < q.rows(); ++row) {
-    JacobianMatrix J = robot.jacobian(q.row(row));
-    const Pose pose = robot.fk(q.row(row));
-    space.deviation(pose, pose, J);
+  bool fits = false;
+  robot.model().visit_configurations([&](const JointVector&, const Pose& pose, const Jacobian& J) {
+    JacobianMatrix rows = J;
+    space.deviation(pose, pose, rows);
     for (int i = 0; i < 6; ++i) {
-      if (space.lower()[i] < space.upper()[i]) J.row(i).setZero();
+      if (space.lower()[i] < space.upper()[i]) rows.row(i).setZero();
     }
-    // Metres and radians alike, so that a small arm has no small singular values.
-    J.topRows<3>() /= robot.reach();
-    const auto sigma = singular_values(J);
-    constexpr double kSingular = 1e-6;
-    if ((sigma.array() > kSingular * sigma[0]).count() == task.constrained_axes()) return true;
-  }
-  return false;
+    fits = fits || rank_of(rows) == task.constrained_axes();
+  });
+  return fits;
 }
 
 }  // namespace

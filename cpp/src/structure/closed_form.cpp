@@ -270,9 +270,9 @@ std::optional<ClosedFormChain> find_closed_form(const ChainModel& model, const T
 }
 
 std::optional<ClosedFormChain> find_residual(const ChainModel& model) {
-  if (model.dof != kPoseJoints || !can_be_closed(model) || is_singular_everywhere(model)) {
-    return std::nullopt;
-  }
+  // With a lower rank solutions are no points, and residuals have no roots but for rounding.
+  const bool is_six = model.dof == kPoseJoints && model.rank == kPoseJoints;
+  if (!is_six || !can_be_closed(model)) return std::nullopt;
   const CompletedAxes axes{ScrewAxes::of(model)};
   auto chain = look_at(model, axes, Sought::residual, kStructureTolerance);
   if (!chain) chain = find_loop(model);

@@ -137,10 +137,6 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain);
 /// fixed by the pose, and the six others are singular wherever it is held.
 bool takes_part_in_self_motion(const ChainModel& model, int joint);
 
-/// Whether six joints move the tip in five directions at most, wherever they are: solutions are
-/// then no points, and residuals have no roots but for rounding.
-bool is_singular_everywhere(const ChainModel& model);
-
 /// The residual of a chain whose closure is sweep_4 or sweep_6, by the angle of one of its joints,
 /// for the target of a pack.
 lanes::ResidualForm make_residual(const ClosedFormChain& chain, const lanes::BranchPack& pack);

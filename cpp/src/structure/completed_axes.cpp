@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <optional>
-
 #include "structure/closed_form.hpp"
 
 namespace iksel {
@@ -96,14 +94,6 @@ class Completion {
   unsigned free_ = 0;
 };
 
-/// The axis of a free spin, if the task is one.
-std::optional<int> find_spin(const Task& task) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (task == Task::free_spin(static_cast<Axis>(axis))) return axis;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::vector<CompletedAxes> complete_axes(const ChainModel& model, const Task& task,
@@ -115,7 +105,9 @@ std::vector<CompletedAxes> complete_axes(const ChainModel& model, const Task& ta
   Completion completion(model, tolerance);
   if (task.is_full_pose()) return completion.with({});
   if (task == Task::position_only()) return completion.for_position();
-  if (const auto spin = find_spin(task)) return completion.for_spin(*spin);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (task == Task::free_spin(static_cast<Axis>(axis))) return completion.for_spin(axis);
+  }
   return {};
 }
 

@@ -3,16 +3,12 @@
 #include <cmath>
 
 #include "base/angle.hpp"
-#include "base/pseudo_inverse.hpp"
-#include "base/random.hpp"
 #include "simd/kernels.hpp"
 #include "structure/closed_form.hpp"
 
 namespace iksel {
 namespace {
 
-constexpr int kConfigurations = 24;
-constexpr std::uint64_t kDrawSeed = 8;
 /// Of a self-motion's direction, the least that a swept joint has of it: where it has less, the
 /// others turn so fast beside it that samples see little of them (python -m bench laws).
 constexpr double kLeastPart = 0.02;
@@ -29,54 +25,21 @@ bool is_same(const ClosedFormChain& chain, const lanes::BranchPack& pack, int la
   return true;
 }
 
-/// How much of the direction in which all seven joints move without the tip is a joint's: by
-/// Cramer's rule it is the determinant of the other six columns.
+/// How much of the direction in which all seven joints move without the tip is a joint's; 0 where
+/// there are several.
 double part_of_self_motion(const Jacobian& J, int joint) {
-  double sum = 0;
-  double own = 0;
-  for (int left_out = 0; left_out < J.cols(); ++left_out) {
-    Eigen::Matrix<double, 6, 6> others;
-    for (int j = 0, column = 0; j < J.cols(); ++j) {
-      if (j != left_out) others.col(column++) = J.col(j);
-    }
-    const double determinant = others.determinant();
-    sum += determinant * determinant;
-    if (left_out == joint) own = std::abs(determinant);
-  }
-  return sum > 0 ? own / std::sqrt(sum) : 0;
-}
-
-/// Visits random configurations inside the limits, always the same ones.
-template <typename Visit>
-void visit_configurations(const ChainModel& model, const Visit& visit) {
-  Random random(kDrawSeed);
-  Jacobian J;
-  for (int i = 0; i < kConfigurations; ++i) {
-    const JointVector q = model.joints.sample(random);
-    const Pose pose = to_pose(model.fk_jacobian(q.data(), J));
-    model.to_unit(J);
-    visit(q, pose, J);
-  }
+  const Eigen::MatrixXd directions = Eigen::MatrixXd(J).fullPivLu().kernel();
+  return directions.cols() == 1 ? std::abs(directions(joint, 0)) / directions.norm() : 0;
 }
 
 }  // namespace
 
 bool takes_part_in_self_motion(const ChainModel& model, int joint) {
   bool takes_part = false;
-  visit_configurations(model, [&](const JointVector&, const Pose&, const Jacobian& J) {
+  model.visit_configurations([&](const JointVector&, const Pose&, const Jacobian& J) {
     takes_part = takes_part || part_of_self_motion(J, joint) > 1e-6;  // rounding
   });
   return takes_part;
-}
-
-bool is_singular_everywhere(const ChainModel& model) {
-  bool is_singular = true;
-  visit_configurations(model, [&](const JointVector&, const Pose&, const Jacobian& J) {
-    const auto sigma = singular_values(J);
-    // With files that are rounded, and so that the tolerances move no joint by more than 0.01 rad.
-    is_singular = is_singular && !(sigma[5] > 1e-4 * sigma[0]);
-  });
-  return is_singular;
 }
 
 bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
@@ -89,7 +52,7 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
   const double most = 1e-4 + 30 * chain.deviation;
   lanes::BranchPack pack = all_branches();
   int found = 0;
-  visit_configurations(model, [&](const JointVector& q, const Pose& pose, const Jacobian& J) {
+  model.visit_configurations([&](const JointVector& q, const Pose& pose, const Jacobian& J) {
     chain.set_target(base_inverse * pose * tip_inverse, pack);
     if (chain.held >= 0) {
       const double offset = model.kernel.joints[static_cast<std::size_t>(chain.held)].offset;
@@ -101,7 +64,7 @@ bool finds_known_solutions(const ChainModel& model, ClosedFormChain chain) {
     const bool moves = model.dof <= 6 || part_of_self_motion(J, chain.held) > kLeastPart;
     if (lane < lanes::kWidth && moves) ++found;
   });
-  return found >= kConfigurations * 3 / 4;
+  return found >= ChainModel::kConfigurations * 3 / 4;
 }
 
 }  // namespace iksel

@@ -44,7 +44,7 @@ class LaneQuery {
   [[nodiscard]] std::size_t blocks_given() const { return blocks_given_; }
   [[nodiscard]] std::size_t near_blocks() const { return near_blocks_; }
 
-  /// For seeds of a task: a leaf, and then the nearest block of samples that was not taken yet.
+  /// For AllowedSeeds: a leaf, and then the nearest block of samples that was not taken yet.
   static constexpr int kPerPose = lanes::kBlock;
   bool find(const Goal& goal, const Pose& allowed, bool is_first);
   /// Starts a lane at the seed of a pack of that rank.

@@ -46,8 +46,7 @@ bool fits(const Robot& robot, const Task& task) {
     // Metres and radians alike, so that a small arm has no small singular values.
     J.topRows<3>() /= robot.reach();
     const auto sigma = singular_values(J);
-    constexpr double kSingular = 1e-6;
-    if ((sigma.array() > kSingular * sigma[0]).count() == task.constrained_axes()) return true;
+    if ((sigma.array() > 1e-6 * sigma[0]).count() == task.constrained_axes()) return true;
   }
   return false;
 }

@@ -2,6 +2,8 @@
 // Joints 1 to 3 of six in closed form (branch_kernel.hpp), by how their axes lie.
 #pragma once
 
+#include <type_traits>
+
 #include "base/constants.hpp"
 #include "simd/branch_math.hpp"
 #include "simd/branch_types.hpp"
@@ -82,24 +84,10 @@ IKSEL_INLINE Angle<T> bend_elbow(const ClosedForm& form, const T& distance2, con
   return solve_angle(form.elbow, T(0.5) * (distance2 - T(form.arm2)), sign, quality);
 }
 
-// As Certainty has them; of others nothing.
-template <typename Q>
-IKSEL_INLINE void turn_way(double /*length*/, Q& /*quality*/) {}
-template <typename T>
-IKSEL_INLINE void turn_way(double length, Certainty<T>& quality) {
-  quality.turn_way(length);
-}
-template <typename Q>
-IKSEL_INLINE void turn_rotation(Q& /*quality*/) {}
-template <typename T>
-IKSEL_INLINE void turn_rotation(Certainty<T>& quality) {
-  quality.turn_rotation();
-}
-
 /// From the point on axis 2 to the wrist, with joint 2 at zero.
 template <typename T, typename Q>
 IKSEL_INLINE Vec<T> arm_at(const ClosedForm& form, const Angle<T>& q3, Q& quality) {
-  turn_way(form.forearm, quality);
+  if constexpr (std::is_same_v<Q, Certainty<T>>) quality.turn_way(form.forearm);
   const Vec<T> forearm = turned(constant<T>(form.h[2]), q3, constant<T>(form.p[2]));
   return add(constant<T>(form.p[1]), T(1.0), forearm);
 }

@@ -32,7 +32,7 @@ IKSEL_INLINE void turn_wrist(const ClosedForm& form, const WristTarget<T>& targe
   const Vec<T> h4 = constant<T>(form.h[3]);
   const Vec<T> h5 = constant<T>(form.h[4]);
   const Vec<T> h6 = constant<T>(form.h[5]);
-  turn_rotation(out.quality);
+  if constexpr (std::is_same_v<Q, Certainty<T>>) out.quality.turn_rotation();
   out.q[4] = solve_angle(form.wrist, dot(h4, target.axis), sign, out.quality);
   if (is_enough(form, 4, out)) return;
   out.q[3] = angle_between(h4, turned(h5, out.q[4], h6), target.axis, out.quality);
@@ -218,12 +218,12 @@ void solve_closed(const ClosedForm& form, BranchPack& pack) {
     }
     return;
   }
-  constexpr bool kShares = kOfOneTarget && L::kCount <= kWidth / 2;
-  for (int first = 0; first < (kShares ? kWidth / 2 : kWidth); first += L::kCount) {
+  const bool share = kOfOneTarget && L::kCount <= kWidth / 2;
+  for (int first = 0; first < (share ? kWidth / 2 : kWidth); first += L::kCount) {
     PlacedArm<T> arm{{{}, Certainty<T>(form.error, kOfOneTarget)}, {}};
     place_arm(form, first, pack, arm);
     finish_arm(form, arm, first, pack);
-    if (kShares) finish_arm(form, arm, first + kWidth / 2, pack);
+    if (share) finish_arm(form, arm, first + kWidth / 2, pack);
   }
 }
 

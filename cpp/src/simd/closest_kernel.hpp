@@ -35,8 +35,7 @@ struct Remaining {
 template <typename T>
 IKSEL_INLINE void square_angle(const T& s, T& F, T& slope, T& bend) {
   // Short of half a turn, where the second derivative has no end.
-  constexpr float kMost = 3.996F;
-  const T inside = min(max(s, T(0.0F)), T(kMost));
+  const T inside = min(max(s, T(0.0F)), T(3.996F));
   const T half = sqrt(T(0.25F) * inside);
   const T over = asin_over(half);
   const T rest = T(1.0F) - T(0.25F) * inside;

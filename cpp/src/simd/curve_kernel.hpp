@@ -58,14 +58,11 @@ IKSEL_INLINE void place(const LaneChain& chain, FullPose<T, CurvePack>& goal, co
   for (int j = 0; j < kCurveJoints; ++j) make_twist(chain.joint[j], frame.p, at.J[j]);
 }
 
-/// J J^T, factorised; `A` is its memory.
+/// J J^T, damped above rounding and factorised; `A` is its memory.
 template <typename T>
 IKSEL_INLINE SymmetricFactors<T> factorize(const CurvePlace<T>& at, T (&A)[6][6]) {
-  constexpr double kLeastDamping = 1e-14;
-  multiply_rows<0, 3>(kCurveJoints, at.J, A);
-  multiply_rows<3, 5>(kCurveJoints, at.J, A);
-  multiply_rows<5, 6>(kCurveJoints, at.J, A);
-  return SymmetricFactors<T>(A, T(kLeastDamping));
+  multiply_by_transposed(kCurveJoints, at.J, A);
+  return SymmetricFactors<T>(A, T(1e-14));
 }
 
 /// q + J^+ error.

@@ -163,14 +163,6 @@ template <typename T>
 IKSEL_INLINE Vec<T> sizes(const Vec<T>& v) {
   return {abs(v.x), abs(v.y), abs(v.z)};
 }
-template <typename T>
-IKSEL_INLINE Vec<T> sum(const Vec<T>& a, const Vec<T>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <typename T>
-IKSEL_INLINE Vec<T> least(const Vec<T>& a, const T& most) {
-  return {min(a.x, most), min(a.y, most), min(a.z, most)};
-}
 
 /// Every v with |v(x) - value - slope x| <= radius, and in each of its components no more than
 /// `radii`: rotations leave the one as it is, and the other along their axis.
@@ -184,9 +176,10 @@ struct Vec<Enclosed<T>> {
   IKSEL_INLINE Vec(const Vec<T>& at, const Vec<T>& by, const Vec<T>& of_each, const T& of_all,
                    const T& size)
       : value(at), slope(by), radius(Enclosed<T>::rounded(of_all, size)) {
-    const Vec<T> most = least(of_each, of_all);
-    radii = {Enclosed<T>::rounded(most.x, size), Enclosed<T>::rounded(most.y, size),
-             Enclosed<T>::rounded(most.z, size)};
+    const auto held = [&](const T& of_one) {
+      return Enclosed<T>::rounded(min(of_one, of_all), size);
+    };
+    radii = {held(of_each.x), held(of_each.y), held(of_each.z)};
   }
   IKSEL_INLINE Vec(const Enclosed<T>& x, const Enclosed<T>& y, const Enclosed<T>& z)
       : value{x.value(), y.value(), z.value()},
@@ -196,7 +189,7 @@ struct Vec<Enclosed<T>> {
 
   /// No less than the length of any of them, and than each component, but for the error.
   [[nodiscard]] IKSEL_INLINE T size() const { return length(value) + length(slope); }
-  [[nodiscard]] IKSEL_INLINE Vec<T> each_size() const { return sum(sizes(value), sizes(slope)); }
+  [[nodiscard]] IKSEL_INLINE Vec<T> each_size() const { return sizes(value) + sizes(slope); }
 };
 
 template <typename T>
@@ -220,9 +213,9 @@ IKSEL_APART Vec<Enclosed<T>> cross(const Vec<Enclosed<T>>& a, const Vec<Enclosed
     return Vec<T>{u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x};
   };
   const Vec<T> by_errors =
-      sum(spread(sum(a.each_size(), a.radii), b.radii), spread(a.radii, b.each_size()));
-  return {sum(cross(a.value, b.value), half), sum(cross(a.value, b.slope), cross(a.slope, b.value)),
-          sum(sizes(half), by_errors),
+      spread(a.each_size() + a.radii, b.radii) + spread(a.radii, b.each_size());
+  return {cross(a.value, b.value) + half, cross(a.value, b.slope) + cross(a.slope, b.value),
+          sizes(half) + by_errors,
           length(half) + size_a * b.radius + (size_b + b.radius) * a.radius, size_a * size_b};
 }
 template <typename T>
@@ -231,17 +224,17 @@ IKSEL_APART Vec<Enclosed<T>> scaled(const Enclosed<T>& s, const Vec<Enclosed<T>>
   const T size_s = abs(s.value()) + abs(s.slope());
   const T size_a = a.size();
   const T most = size_s + s.radius();
-  const Vec<T> by_errors = sum(scaled(s.radius(), a.each_size()), scaled(most, a.radii));
+  const Vec<T> by_errors = scaled(s.radius(), a.each_size()) + scaled(most, a.radii);
   return {add(half, s.value(), a.value), add(scaled(s.value(), a.slope), s.slope(), a.value),
-          sum(sizes(half), by_errors), length(half) + size_a * s.radius() + most * a.radius,
+          sizes(half) + by_errors, length(half) + size_a * s.radius() + most * a.radius,
           size_s * size_a};
 }
 template <typename T>
 IKSEL_APART Vec<Enclosed<T>> add(const Vec<Enclosed<T>>& a, const Enclosed<T>& s,
                                  const Vec<Enclosed<T>>& b) {
   const Vec<Enclosed<T>> more = scaled(s, b);
-  return {sum(a.value, more.value), sum(a.slope, more.slope), sum(a.radii, more.radii),
-          a.radius + more.radius, a.size() + more.size()};
+  return {a.value + more.value, a.slope + more.slope, a.radii + more.radii, a.radius + more.radius,
+          a.size() + more.size()};
 }
 /// About a k that is constant.
 template <typename T>
@@ -257,9 +250,9 @@ IKSEL_APART Vec<Enclosed<T>> turned(const Vec<Enclosed<T>>& k, const Angle<Enclo
   const Vec<T> value = add(v.value, T(0.0) - along, axis);
   const Vec<T> slope = add(v.slope, T(0.0) - along_slope, axis);
   const Vec<T> half = turn(T(0.5) * t.c.slope(), T(0.5) * t.s.slope(), slope);
-  const Vec<T> at = sum(add(turn(t.c.value(), t.s.value(), value), along, axis), half);
-  const Vec<T> by = sum(add(turn(t.c.value(), t.s.value(), slope), along_slope, axis),
-                        turn(t.c.slope(), t.s.slope(), value));
+  const Vec<T> at = add(turn(t.c.value(), t.s.value(), value), along, axis) + half;
+  const Vec<T> by = add(turn(t.c.value(), t.s.value(), slope), along_slope, axis) +
+                    turn(t.c.slope(), t.s.slope(), value);
   // The angle itself is one of a circle, whatever its enclosure: it leaves errors as they are.
   const T off = sqrt(t.c.radius() * t.c.radius() + t.s.radius() * t.s.radius());
   const T radius = v.radius + off * (length(value) + length(slope)) + length(half);

@@ -34,18 +34,17 @@ using EnclosedBranch = Branch<Enclosed<T>, Presence<T>>;
 /// How far an enclosed angle may still be within limits; below 0: it is certainly not [rad].
 template <typename T>
 IKSEL_INLINE T room_within(const ClosedForm& form, int j, const Angle<Enclosed<T>>& angle) {
-  /// The arc sine of s is no more than s (1 + 0.3 s^2), up to this s.
-  constexpr double kMost = 0.7;
   const T size =
       sqrt(max(angle.c.value() * angle.c.value() + angle.s.value() * angle.s.value(), T(1e-12)));
   const T inverse = T(1.0) / size;
   const T c = angle.c.reach();
   const T s = angle.s.reach();
-  // Seen from the origin, a point is off by no more than the arc sine of how far it is away.
+  // Seen from the origin, a point is off by no more than the arc sine of how far it is away: of s
+  // up to 0.7 no more than s (1 + 0.3 s^2).
   const T sine = sqrt(c * c + s * s) * inverse;
   const T off = sine * (T(1.0) + T(0.3) * sine * sine) + T(kRounding);
   const T q = joint_value(form, j, Angle<T>{angle.c.value() * inverse, angle.s.value() * inverse});
-  return select(sine < T(kMost), off - beyond_limits(form, j, q), T(1.0));
+  return select(sine < T(0.7), off - beyond_limits(form, j, q), T(1.0));
 }
 
 template <typename T>

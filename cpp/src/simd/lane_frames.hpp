@@ -64,6 +64,12 @@ IKSEL_INLINE void place_joints(const LaneChainOf<NumberOf<T>>& chain, const T* q
   }
 }
 
+/// Component i of u x v.
+template <typename U, typename V>
+IKSEL_INLINE auto cross_at(int i, const U& u, const V& v) {
+  return u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+}
+
 /// From a joint's origin and axis to the twist by which it moves a point: its column of a Jacobian.
 template <typename T, typename Joint>
 IKSEL_INLINE void make_twist(const Joint& joint, const T* point, T (&column)[6]) {
@@ -75,11 +81,7 @@ IKSEL_INLINE void make_twist(const Joint& joint, const T* point, T (&column)[6])
     }
   } else {
     const T r[3] = {point[0] - column[0], point[1] - column[1], point[2] - column[2]};
-    for (int i = 0; i < 3; ++i) {
-      const int a = (i + 1) % 3;
-      const int b = (i + 2) % 3;
-      column[i] = axis[a] * r[b] - axis[b] * r[a];
-    }
+    for (int i = 0; i < 3; ++i) column[i] = cross_at(i, axis, r);
   }
 }
 
@@ -125,7 +127,7 @@ template <typename T>
   }
 }
 
-/// Rows kFirst to kLast - 1 of the lower half of A = J J^T: few at a time stay in registers.
+/// Rows kFirst to kLast - 1 of the lower half of A = J J^T.
 template <int kFirst, int kLast, typename T>
 inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
 #pragma GCC unroll 6
@@ -141,6 +143,13 @@ inline void multiply_rows(int n, const T (*J)[6], T (&A)[6][6]) {
       for (int c = 0; c <= r; ++c) A[r][c] = A[r][c] + J[j][r] * J[j][c];
     }
   }
+}
+/// All of it: few rows at a time stay in registers.
+template <typename T>
+IKSEL_INLINE void multiply_by_transposed(int n, const T (*J)[6], T (&A)[6][6]) {
+  multiply_rows<0, 3>(n, J, A);
+  multiply_rows<3, 5>(n, J, A);
+  multiply_rows<5, 6>(n, J, A);
 }
 
 }  // namespace iksel::lanes

@@ -23,8 +23,8 @@ class FullPose {
       trace = trace + f.x[i] * row(3 + i) + f.y[i] * row(6 + i) + f.z[i] * row(9 + i);
     }
     // Above what rounding leaves of it at half a turn.
-    constexpr NumberOf<T> kLeastTrace = sizeof(NumberOf<T>) == 4 ? 1e-6 : 1e-12;
-    const T factor = T(1.0) / sqrt(max(trace, T(kLeastTrace)));
+    const T least(sizeof(NumberOf<T>) == 4 ? 1e-6 : 1e-12);
+    const T factor = T(1.0) / sqrt(max(trace, least));
     for (int i = 0; i < 3; ++i) {
       const int a = (i + 1) % 3;
       const int b = (i + 2) % 3;
@@ -101,13 +101,9 @@ class TaskGoal {
       // w' = w - v x w / 2 + k v x (v x w): the inverse of the left Jacobian at the rotation
       // vector v.
       const T* v = d_ + 3;
-      T cross[3];
+      const T once[3] = {cross_at(0, v, w), cross_at(1, v, w), cross_at(2, v, w)};
       for (int i = 0; i < 3; ++i) {
-        cross[i] = v[(i + 1) % 3] * w[(i + 2) % 3] - v[(i + 2) % 3] * w[(i + 1) % 3];
-      }
-      for (int i = 0; i < 3; ++i) {
-        const T twice = v[(i + 1) % 3] * cross[(i + 2) % 3] - v[(i + 2) % 3] * cross[(i + 1) % 3];
-        column[3 + i] = w[i] - T(0.5) * cross[i] + k_ * twice;
+        column[3 + i] = w[i] - T(0.5) * once[i] + k_ * cross_at(i, v, once);
       }
       return;
     }
@@ -125,7 +121,6 @@ class TaskGoal {
   /// Parts inside their bounds ask for nothing, unless the step would take them out: then they are
   /// to stay at the bound.
   void solve(T (&A)[6][6], const T& lambda, const T (&e)[6], T (&y)[6]) const {
-    constexpr int kRounds = 4;
     T asked[6];
     T active[6];
     for (int i = 0; i < 6; ++i) {
@@ -140,7 +135,7 @@ class TaskGoal {
         for (int k = 0; k <= i; ++k) masked[i][k] = A[i][k] * active[i] * active[k];
       }
       SymmetricFactors<T>(masked, lambda).solve(asked, y);
-      if (round == kRounds || !activate(A, y, asked, active)) return;
+      if (round == 4 || !activate(A, y, asked, active)) return;
     }
   }
 

@@ -100,9 +100,7 @@ IKSEL_INLINE PackResult iterate(const LaneChainOf<NumberOf<T>>& chain, const Lan
     make_columns<kIsSimple>(chain, q, goal, frame, e, J);
     // dq = J^T (J J^T + lambda I)^-1 e.
     T A[6][6];
-    multiply_rows<0, 3>(n, J, A);
-    multiply_rows<3, 5>(n, J, A);
-    multiply_rows<5, 6>(n, J, A);
+    multiply_by_transposed(n, J, A);
     const T lambda = T(options.damping) * e2 + T(options.least_damping);
     T step[6];
     goal.solve(A, lambda, e, step);

@@ -77,18 +77,12 @@ template <typename T>
 inline T asin_over(const T& s) {
   const auto large = s > T(0.5);
   const T t = select(large, T(0.5) - T(0.5) * s, s * s);
-  T p = T(3.47933107596021167570e-05);
-  p = p * t + T(7.91534994289814532176e-04);
-  p = p * t + T(-4.00555345006794114027e-02);
-  p = p * t + T(2.01212532134862925881e-01);
-  p = p * t + T(-3.25565818622400915405e-01);
-  p = (p * t + T(1.66666666666666657415e-01)) * t;
-  T q = T(7.70381505559019352791e-02);
-  q = q * t + T(-6.88283971605453293030e-01);
-  q = q * t + T(2.02094576023350569471e+00);
-  q = q * t + T(-2.40339491173441421878e+00);
-  q = q * t + T(1.0);
-  const T r = T(1.0) + p / q;
+  const T p = polynomial(t, 3.47933107596021167570e-05, 7.91534994289814532176e-04,
+                         -4.00555345006794114027e-02, 2.01212532134862925881e-01,
+                         -3.25565818622400915405e-01, 1.66666666666666657415e-01);
+  const T q = polynomial(t, 7.70381505559019352791e-02, -6.88283971605453293030e-01,
+                         2.02094576023350569471e+00, -2.40339491173441421878e+00, 1.0);
+  const T r = T(1.0) + p * t / q;
   const T root = sqrt(max(t, T(0.0)));
   return select(large, (T(1.57079632679489661923) - T(2.0) * root * r) / max(s, T(0.5)), r);
 }
@@ -101,13 +95,7 @@ inline T rough_atan2(const T& y, const T& x) {
   const T ay = abs(y);
   const T high = max(max(ax, ay), T(1e-30F));
   const T t = min(ax, ay) / high;
-  const T t2 = t * t;
-  T a = T(0.0208351F);
-  a = a * t2 + T(-0.0851330F);
-  a = a * t2 + T(0.1801410F);
-  a = a * t2 + T(-0.3302995F);
-  a = a * t2 + T(0.9998660F);
-  a = a * t;
+  T a = t * polynomial(t * t, 0.0208351F, -0.0851330F, 0.1801410F, -0.3302995F, 0.9998660F);
   a = select(ay > ax, T(1.57079633F) - a, a);
   a = select(x < T(0.0F), T(3.14159265F) - a, a);
   return select(y < T(0.0F), T(0.0F) - a, a);

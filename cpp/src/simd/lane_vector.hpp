@@ -23,6 +23,14 @@ template <typename T>
 IKSEL_INLINE Vec<T> cross(const Vec<T>& a, const Vec<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+template <typename T>
+IKSEL_INLINE Vec<T> operator+(const Vec<T>& a, const Vec<T>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <typename T>
+IKSEL_INLINE Vec<T> operator-(const Vec<T>& a, const Vec<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 /// a + s b
 template <typename T>
 IKSEL_INLINE Vec<T> add(const Vec<T>& a, const T& s, const Vec<T>& b) {

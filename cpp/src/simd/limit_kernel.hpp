@@ -169,10 +169,8 @@ template <typename T>
                                     const T* scale, T* slope, T (*H)[kMaxJoints]) {
   // Multipliers one after the other (Hildreth): a joint held at its own limit comes free where a
   // row pushes it inside.
-  constexpr int kRounds = 4;
-  constexpr NumberOf<T> kSteep = 100;
   T multiplier[kMostSums];
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 4; ++round) {
     for (int r = 0; r < chain.sums; ++r) {
       const auto& row = chain.sum[r];
       const T sum = sum_of(chain, r, q);
@@ -204,7 +202,7 @@ template <typename T>
       weighted = weighted + scale[j] * T(row.c[j]) * T(row.c[j]);
       size2 = size2 + T(row.c[j]) * T(row.c[j]);
     }
-    const T steep = T(kSteep) * weighted / (size2 * size2);
+    const T steep = T(100.0) * weighted / (size2 * size2);
     const T held = select(abs(multiplier[r]) > T(0.0), steep, T(0.0));
     for (int j = 0; j < chain.n; ++j) {
       for (int i = 0; i <= j; ++i) H[j][i] = H[j][i] + held * T(row.c[j]) * T(row.c[i]);

@@ -148,7 +148,6 @@ void count_roots(const double* values, int n, double apart, double* counts) {
   // For the first two inner coefficients; the other two are their mirror images.
   constexpr double kFirst[6] = {1.0 / 100, -1.0 / 10, 14.0 / 15, 1.0 / 5, -1.0 / 20, 1.0 / 150};
   constexpr double kSecond[6] = {19.0 / 1200, -2.0 / 15, 89.0 / 120, 7.0 / 15, -5.0 / 48, 1.0 / 75};
-  constexpr double kMargin = 0.02;
   for (int i = 0; i < n; i += Lanes<T>::kCount) {
     T v[8];
     for (int k = 0; k < 8; ++k) v[k] = Lanes<T>::load(values + i + k - 3);
@@ -156,7 +155,7 @@ void count_roots(const double* values, int n, double apart, double* counts) {
       return abs(v[k] + v[k + 6] - T(6.0) * (v[k + 1] + v[k + 5]) +
                  T(15.0) * (v[k + 2] + v[k + 4]) - T(20.0) * v[k + 3]);
     };
-    const T margin = T(kMargin) * max(sixth(0), sixth(1));
+    const T margin = T(0.02) * max(sixth(0), sixth(1));
     T b[6] = {v[3], T(0.0), T(0.0), T(0.0), T(0.0), v[4]};
     for (int k = 0; k < 6; ++k) {
       b[1] = b[1] + T(kFirst[k]) * v[1 + k];

@@ -31,8 +31,7 @@ IKSEL_INLINE Vec<double> turned_back(const BodyFrame& f, const Vec<double>& v) {
 }
 /// a seen from b, both in the base frame.
 IKSEL_INLINE BodyFrame seen_from(const BodyFrame& b, const BodyFrame& a) {
-  return {turned_back(b, a.x), turned_back(b, a.y), turned_back(b, a.z),
-          turned_back(b, add(a.p, -1.0, b.p))};
+  return {turned_back(b, a.x), turned_back(b, a.y), turned_back(b, a.z), turned_back(b, a.p - b.p)};
 }
 
 /// The frames of a scene's bodies in the base frame, and the balls around its links, kept in a
@@ -145,7 +144,7 @@ class SceneBodies {
     unsigned mask = 0;
     for (int lane = 0; lane < kWidth; lane += Lanes<T>::kCount) {
       const int others = block.first + lane;
-      const Vec<T> d = add(link_centres(others), T(-1.0), centre);
+      const Vec<T> d = link_centres(others) - centre;
       const T reach = link_radii(others) + T(radius_[one]);
       mask |= to_bits<T>(dot(d, d) <= reach * reach) << static_cast<unsigned>(lane);
     }

@@ -55,10 +55,7 @@ class SceneCheck {
   IKSEL_INLINE bool touch(const T& found, unsigned mask) {
     double of_lane[Lanes<T>::kCount];
     Lanes<T>::store(found, of_lane);
-    for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
-      if ((mask >> static_cast<unsigned>(lane) & 1U) != 0)
-        clearance_ = min(clearance_, of_lane[lane]);
-    }
+    clearance_ = min(clearance_, of_lane[take_least(of_lane, mask)]);
     return true;
   }
   /// Takes the lane of a mask that has the least clearance: it most likely touches.

@@ -7,22 +7,17 @@
 
 namespace iksel::lanes {
 
-template <typename T>
-IKSEL_INLINE Vec<T> difference(const Vec<T>& a, const Vec<T>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
 /// Of two balls whose radii together are `reach`.
 template <typename T>
 IKSEL_INLINE T clearance(const Vec<T>& a, const Vec<T>& b, const T& reach) {
-  const Vec<T> d = difference(a, b);
+  const Vec<T> d = a - b;
   return dot(d, d) - reach * reach;
 }
 
 /// Whether no ball is so near to a shape that it need be looked at closer.
 template <typename T>
 IKSEL_INLINE bool is_far(const SceneBlock& block, const Vec<T>& c, const T& radius) {
-  const Vec<T> d = difference(c, constant<T>(block.centre));
+  const Vec<T> d = c - constant<T>(block.centre);
   const T reach = radius + T(block.around);
   return !any(dot(d, d) <= reach * reach);
 }
@@ -34,7 +29,7 @@ IKSEL_INLINE bool is_far(const Shape& /*shape*/, const Vec<T>& /*c*/, const T& /
 
 template <typename T>
 IKSEL_INLINE T clearance(const SceneBlock& block, const Vec<T>& c, const T& radius) {
-  const Vec<T> d = difference(c, constant<T>(block.centre));
+  const Vec<T> d = c - constant<T>(block.centre);
   T square(0.0);
   for (int i = 0; i < 3; ++i) {
     const T along = dot(d, constant<T>(block.axis[i]));
@@ -47,7 +42,7 @@ IKSEL_INLINE T clearance(const SceneBlock& block, const Vec<T>& c, const T& radi
 
 template <typename T>
 IKSEL_INLINE T clearance(const SceneCylinder& cylinder, const Vec<T>& c, const T& radius) {
-  const Vec<T> d = difference(c, constant<T>(cylinder.centre));
+  const Vec<T> d = c - constant<T>(cylinder.centre);
   const T along = dot(d, constant<T>(cylinder.axis));
   const T across2 = max(dot(d, d) - along * along, T(0.0));
   const T beside = max(sqrt(across2) - T(cylinder.radius), T(0.0));

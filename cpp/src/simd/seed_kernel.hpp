@@ -111,11 +111,7 @@ IKSEL_INLINE void measure_rest(const SeedChain& chain, const SeedTargetOf<T>& ta
   FullPose<T, SeedTargetOf<T>>(target, nullptr).measure(sample, e);
   if (chain.right != Side::translation) return;
   const auto& z = sample.z;
-  for (int i = 0; i < 3; ++i) {
-    const int a = (i + 1) % 3;
-    const int b = (i + 2) % 3;
-    e[i] = e[i] - slide * z[i] - slide * (e[3 + a] * z[b] - e[3 + b] * z[a]);
-  }
+  for (int i = 0; i < 3; ++i) e[i] = e[i] - slide * z[i] - slide * cross_at(i, e + 3, z);
 }
 
 /// One step by the stored pseudo-inverse, into the limits, for the samples of the block from

@@ -94,19 +94,27 @@ IKSEL_INLINE BranchTarget<T> held_target(const ClosedForm& form, const BranchPac
   return target;
 }
 
-/// How far such branches are off.
-template <typename T, int kCount>
-IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& target, const T& held,
-                             const double (&sign)[2], const double (&last)[kCount], double bound,
-                             double* const (&off)[kCount]) {
-  Prospect<T> prospect;
-  prospect.bound = bound;
-  solve_signs(
-      form, target, {T(sign[0]), T(sign[1])}, last,
-      prospect, [&](int i, RatedBranch<T>& branch) __attribute__((always_inline)) {
-        add_sums(form, held, branch);
-        Lanes<T>::store(branch.quality.off(), off[i]);
-      });
+/// How far the branches of so many arms are off, of both signs of the wrist, which are half a pack
+/// apart, or of one.
+template <int kWrists, typename T>
+IKSEL_INLINE void rate_arms(const ClosedForm& form, const BranchPack& pack, double bound, int arms,
+                            double (*off)[kWidth]) {
+  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
+    const T held = Lanes<T>::load(pack.held + first);
+    const BranchTarget<T> target = held_target(form, pack, first, held);
+    Prospect<T> prospect;
+    prospect.bound = bound;
+    for (int arm = 0; arm < arms; ++arm) {
+      double last[kWrists];
+      for (int i = 0; i < kWrists; ++i) last[i] = pack.sign[2][arm + i * arms];
+      solve_signs(
+          form, target, {T(pack.sign[0][arm]), T(pack.sign[1][arm])}, last,
+          prospect, [&](int i, RatedBranch<T>& branch) __attribute__((always_inline)) {
+            add_sums(form, held, branch);
+            Lanes<T>::store(branch.quality.off(), off[arm + i * arms] + first);
+          });
+    }
+  }
 }
 
 /// At kWidth angles of the held joint: off[branch][angle] is how far a branch, of the signs in the
@@ -115,28 +123,14 @@ IKSEL_INLINE void rate_signs(const ClosedForm& form, const BranchTarget<T>& targ
 template <typename T>
 void rate_branches(const ClosedForm& form, const BranchPack& pack, double bound,
                    double (&off)[kWidth][kWidth]) {
-  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    const T held = Lanes<T>::load(pack.held + first);
-    const BranchTarget<T> target = held_target(form, pack, first, held);
-    for (int lane = 0; lane < kWidth / 2; ++lane) {
-      const int other = lane + kWidth / 2;
-      rate_signs<T, 2>(form, target, held, {pack.sign[0][lane], pack.sign[1][lane]},
-                       {pack.sign[2][lane], pack.sign[2][other]}, bound,
-                       {off[lane] + first, off[other] + first});
-    }
-  }
+  rate_arms<2, T>(form, pack, bound, kWidth / 2, off);
 }
 
 /// The same of one branch, whose signs are in the pack's first lane.
 template <typename T>
 void rate_branch(const ClosedForm& form, const BranchPack& pack, double bound,
                  double (&off)[kWidth]) {
-  for (int first = 0; first < kWidth; first += Lanes<T>::kCount) {
-    const T held = Lanes<T>::load(pack.held + first);
-    const BranchTarget<T> target = held_target(form, pack, first, held);
-    rate_signs<T, 1>(form, target, held, {pack.sign[0][0], pack.sign[1][0]}, {pack.sign[2][0]},
-                     bound, {off + first});
-  }
+  rate_arms<1, T>(form, pack, bound, 1, &off);
 }
 
 }  // namespace iksel::lanes

@@ -65,10 +65,9 @@ class Batch {
     const bool plain =
         one_tip && !request_.has_requirements() && (count_ == 0 || near_(0) == nullptr);
     // Few at a time keep all threads busy; many are for the lanes and the filter.
-    constexpr std::size_t kFew = 8;
     const bool is_screened =
         one_tip && screens_answers(request_) && !std::isfinite(request_.deadline);
-    const std::size_t chunk = plain || is_screened ? kMost : kFew;
+    const std::size_t chunk = plain || is_screened ? kMost : 8;
     std::mutex turn;
     const SolveRequest locked = in_turn(request_, turn);
     const auto make_worker = [&] {

@@ -59,11 +59,8 @@ class Diagnoser {
     // an arm that is but nearly regular its own.
     if (branches->chain().is_completed() || !branches->are_answers()) return false;
     const Pose Y = workspace.lanes->query.reduce(goal_.target());
-    auto reasons = explain_branches(goal_, Y, *branches);
-    if (!reasons) return false;
-    out_ = std::move(reasons->diagnosis);
     BestEffort effort = make_effort(goal_);
-    for (const JointVector& seed : reasons->seeds) effort.from(seed);
+    if (!explain_branches(goal_, Y, *branches, effort, out_)) return false;
     describe(effort.q());
     return true;
   }
@@ -207,11 +204,12 @@ class Diagnoser {
   }
 
   void explain_refusals(Status status) {
-    SolveAllOptions every;
-    every.max = kMostRefused;
-    const Solutions refused = patient().solve_all(goal_.target(), every, open_);
-    out_.attempts += refused.attempts;
-    const JointVector q = iksel::explain_refusals(request_, status, refused, out_);
+    const auto find_all = [&](const SolveAllOptions& every, const SolveRequest& open) {
+      Solutions found = patient().solve_all(goal_.target(), every, open);
+      out_.attempts += found.attempts;
+      return found;
+    };
+    const JointVector q = iksel::explain_refusals(request_, status, find_all, out_);
     if (q.size() > 0) describe(q);
   }
 
@@ -222,15 +220,13 @@ class Diagnoser {
 
   /// Puts q into the diagnosis; true if it is close to a singularity.
   bool describe(const JointVector& q) {
-    /// Singular values below this part of the largest are close to a singularity.
-    constexpr double kNearlySingular = 1e-3;
     out_.q = q;
     goal_.measure(q, out_.position_error, out_.rotation_error);
     Jacobian J;
     model_.fk_jacobian(q.data(), J);
     const auto sigma = singular_values(JacobianMatrix(J));
     out_.least_singular_value = sigma.minCoeff();
-    return out_.least_singular_value < kNearlySingular * sigma.maxCoeff();
+    return out_.least_singular_value < 1e-3 * sigma.maxCoeff();
   }
 
   /// Whether q is an answer that the search has missed; it is then what is said.

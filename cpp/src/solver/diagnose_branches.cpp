@@ -2,7 +2,6 @@
 #include "solver/diagnose_branches.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -54,26 +53,9 @@ struct Trace {
   }
 };
 
-/// The joints whose angles take a root, in the kernel's order.
-std::array<int, 3> joints_by_call(Closure closure) {
-  switch (closure) {
-    case Closure::parallel_23:
-      return {0, 2, 4};
-    case Closure::intersect_12:
-      return {2, 0, 4};
-    case Closure::intersect_23:
-      return {0, 2, 4};
-    case Closure::parallel_12:
-      return {2, 1, 4};
-    case Closure::three_parallel:
-      return {0, 4, 2};
-    case Closure::sweep_4:
-    case Closure::sweep_6:
-    case Closure::loop:
-      break;
-  }
-  return {};
-}
+/// The joints whose angles take a root, in the kernel's order, of each closure without a held
+/// joint.
+constexpr int kRootJoints[][3] = {{0, 2, 4}, {2, 0, 4}, {0, 2, 4}, {2, 1, 4}, {0, 4, 2}};
 
 bool bends_elbow(Closure closure) {
   return closure == Closure::parallel_23 || closure == Closure::intersect_12 ||
@@ -90,10 +72,9 @@ ElbowSpan span_of(const ClosedFormChain& chain, const lanes::Angle<double>& q3, 
   const double off = side * std::sqrt(std::max(elbow.r2 - square, 0.0));
   const double radius = std::sqrt(elbow.r2);
   // What lies along parallel axes is always there and counts for nothing.
-  double along = 0;
-  if (parallel) {
-    for (int i = 0; i < 3; ++i) along += form.h[1][i] * (form.p[1][i] + form.p[2][i]);
-  }
+  const lanes::Vec<double> way =
+      lanes::constant<double>(form.p[1]) + lanes::constant<double>(form.p[2]);
+  const double along = parallel ? dot(lanes::constant<double>(form.h[1]), way) : 0;
   const auto distance = [&](double dot) {
     const double square_of_it = form.arm2 + 2 * (elbow.c + dot) - along * along;
     return chain.unit * std::sqrt(std::max(square_of_it, 0.0));
@@ -105,25 +86,21 @@ ElbowSpan span_of(const ClosedFormChain& chain, const lanes::Angle<double>& q3, 
 MissingAngle find_missing_angle(const ClosedFormChain& chain, const lanes::BranchPack& pack,
                                 int lane) {
   const lanes::ClosedForm& form = chain.form;
-  const auto vector = [&](int i) {
-    return lanes::Vec<double>{pack.target[i][lane], pack.target[i + 1][lane],
-                              pack.target[i + 2][lane]};
-  };
-  const lanes::BranchTarget<double> target{vector(0), vector(3), vector(6), vector(9)};
-  const double sign[3] = {pack.sign[0][lane], pack.sign[1][lane], pack.sign[2][lane]};
+  const auto target = lanes::load_target<double>(pack, lane);
+  const lanes::Signs<double> sign(pack, lane);
   lanes::Branch<double, Trace> branch;
   branch.quality = Trace{form.error};
   if (form.closure == Closure::three_parallel) {
-    lanes::solve_three_parallel(form, target, sign, branch);
+    lanes::solve_three_parallel(form, target, sign.of, branch);
   } else {
-    lanes::place_wrist(form, target.w, sign, branch);
-    lanes::turn_wrist(form, lanes::behind_arm(form, target, branch), sign[2], branch);
+    lanes::place_wrist(form, target.w, sign.of, branch);
+    lanes::turn_wrist(form, lanes::behind_arm(form, target, branch), sign.of[2], branch);
   }
   const Trace& trace = branch.quality;
   if (trace.failed < 0) return {};
   MissingAngle missing;
   missing.found = trace.failed;
-  missing.joint = joints_by_call(form.closure)[static_cast<std::size_t>(trace.failed)];
+  missing.joint = kRootJoints[static_cast<int>(form.closure)][trace.failed];
   missing.square = trace.square;
   missing.is_elbow = missing.joint == 2 && bends_elbow(form.closure);
   if (missing.is_elbow) missing.span = span_of(chain, branch.q[2], trace.square);
@@ -195,12 +172,10 @@ std::string describe_elbow(const ChainModel& model, const ClosedFormChain& chain
 
 }  // namespace
 
-std::optional<BranchReasons> explain_branches(const Goal& goal, const Pose& Y,
-                                              Enumeration& branches) {
+bool explain_branches(const Goal& goal, const Pose& Y, Enumeration& branches, BestEffort& effort,
+                      Diagnosis& out) {
   const ChainModel& model = goal.model();
   branches.solve(Y);
-  BranchReasons reasons;
-  Diagnosis& out = reasons.diagnosis;
   out.branch = find_nearest(goal, branches);
   if (out.branch.size() > 0) {
     out.cause = Cause::joint_limits;
@@ -210,11 +185,11 @@ std::optional<BranchReasons> explain_branches(const Goal& goal, const Pose& Y,
                       "each branch that reaches the target lies outside the limits; in the "
                       "nearest, ") +
                   list_violations(model, out.branch) + ": move the target, or leave an axis free";
-    reasons.seeds.push_back(out.branch);
-    return reasons;
+    effort.from(out.branch);
+    return true;
   }
   const MissingAngle missing = find_missing(branches);
-  if (missing.found < 0) return std::nullopt;
+  if (missing.found < 0) return false;
   const ClosedFormChain& chain = branches.chain();
   out.cause = Cause::no_branch;
   out.joint = chain.joints[missing.joint];
@@ -227,9 +202,9 @@ std::optional<BranchReasons> explain_branches(const Goal& goal, const Pose& Y,
   out.message = kCertainly + ("whatever the limits, " + what) + ": move the target, or turn it";
   for (int lane = 0; lane < lanes::kWidth; ++lane) {
     const JointVector q = joints_of(branches, lane);
-    if (q.allFinite()) reasons.seeds.push_back(q);
+    if (q.allFinite()) effort.from(q);
   }
-  return reasons;
+  return true;
 }
 
 }  // namespace iksel

@@ -69,8 +69,12 @@ SolveRequest opened(const SolveRequest& request) {
   return open;
 }
 
-JointVector explain_refusals(const SolveRequest& request, Status status, const Solutions& refused,
-                             Diagnosis& out) {
+JointVector explain_refusals(
+    const SolveRequest& request, Status status,
+    FunctionRef<Solutions(const SolveAllOptions&, const SolveRequest&)> find_all, Diagnosis& out) {
+  SolveAllOptions every;
+  every.max = 512;
+  const Solutions refused = find_all(every, opened(request));
   out.refused = static_cast<int>(refused.all.size());
   if (status == Status::in_collision && !refused.all.empty()) {
     return explain_collisions(*request.scene, refused, out);

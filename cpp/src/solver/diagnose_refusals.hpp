@@ -2,6 +2,7 @@
 // Why each answer is refused.
 #pragma once
 
+#include "base/function_ref.hpp"
 #include "iksel/diagnosis.hpp"
 #include "iksel/request.hpp"
 
@@ -11,16 +12,14 @@ inline bool is_refusal(Status status) {
   return status == Status::rejected || status == Status::in_collision;
 }
 
-/// Answers that are looked at to say what refuses them, at most.
-inline constexpr int kMostRefused = 512;
-
 /// The request without what refuses answers or prefers some.
 SolveRequest opened(const SolveRequest& request);
 
-/// Puts cause, numbers and message into `out`, for answers that were all refused with that status.
-/// Returns one of them, if there is one: where they collide, that whose deepest contact is the
-/// least deep.
-JointVector explain_refusals(const SolveRequest& request, Status status, const Solutions& refused,
-                             Diagnosis& out);
+/// Puts cause, numbers and message into `out`, for answers that were all refused with that status,
+/// which `find_all` finds for the opened request. Returns one of them, if there is one: where they
+/// collide, that whose deepest contact is the least deep.
+JointVector explain_refusals(
+    const SolveRequest& request, Status status,
+    FunctionRef<Solutions(const SolveAllOptions&, const SolveRequest&)> find_all, Diagnosis& out);
 
 }  // namespace iksel

@@ -58,10 +58,10 @@ Diagnosis Solver::Impl::diagnose_tips(const std::vector<Pose>& targets,
       out.message = "solved";
       out.q_is_solution = true;
     } else if (is_refusal(result.status)) {
-      SolveAllOptions every;
-      every.max = kMostRefused;
-      const Solutions refused = solve_all(goal, every, opened(request), workspace);
-      out.q = explain_refusals(request, result.status, refused, out);
+      const auto find_all = [&](const SolveAllOptions& every, const SolveRequest& open) {
+        return solve_all(goal, every, open, workspace);
+      };
+      out.q = explain_refusals(request, result.status, find_all, out);
     } else {
       BestEffort effort(goal, rotation_weight());
       effort.from_anywhere(kEfforts, options.seed);

@@ -33,14 +33,11 @@ std::string place_text(const Limit& limit, double value, const std::string& unit
 }  // namespace
 
 double worst_violation(const JointSpace& joints, const JointVector& q) {
-  double worst = 0;
-  joints.visit_limits([&](const Limit& limit) {
-    worst = std::max(worst, limit.beyond(limit.value(q.data())) / limit.size);
-  });
-  return worst;
+  Diagnosis ignored;
+  return set_violation(joints, q, ignored);
 }
 
-void set_violation(const JointSpace& joints, const JointVector& q, Diagnosis& out) {
+double set_violation(const JointSpace& joints, const JointVector& q, Diagnosis& out) {
   double worst = -kInfinity;
   joints.visit_limits([&](const Limit& limit) {
     const double beyond = std::max(limit.beyond(limit.value(q.data())), 0.0);
@@ -50,6 +47,7 @@ void set_violation(const JointSpace& joints, const JointVector& q, Diagnosis& ou
     out.coupled_limit = limit.coupled_limit;
     out.limit_violation = beyond;
   });
+  return worst;
 }
 
 std::string describe_violation(const ChainModel& model, const Diagnosis& diagnosis) {

@@ -12,12 +12,11 @@ namespace iksel {
 /// Of lengths and angles in messages.
 inline constexpr int kShownDigits = 4;
 
-/// How far q lies outside the limits: the joint that is farthest, or what is coupled, as far as one
-/// of its joints would have to move by [rad or m].
+/// Writes to the diagnosis which limit q violates most, and by how much. Returns how far outside
+/// the joint is, or of what is coupled how far one of its joints would have to move [rad or m].
+double set_violation(const JointSpace& joints, const JointVector& q, Diagnosis& out);
+/// Only the latter.
 double worst_violation(const JointSpace& joints, const JointVector& q);
-
-/// Writes to the diagnosis which limit that is, and by how much it is violated.
-void set_violation(const JointSpace& joints, const JointVector& q, Diagnosis& out);
 
 /// "joint 'a' would have to go beyond by 0.2 rad", of a diagnosis with a violation.
 std::string describe_violation(const ChainModel& model, const Diagnosis& diagnosis);

@@ -14,8 +14,6 @@ namespace {
 Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* before,
                     const PathOptions& path, PathSearch& search, Workspace& workspace,
                     Layer& layer) {
-  // Of several tips a search takes far longer than what goes on from the waypoint before.
-  constexpr std::size_t kEnoughForTips = 8;
   if (before != nullptr && !search.add_continuations(goal, *before, layer) && goal.is_redundant()) {
     // Another way on from the cheapest, past what its iteration met, may be short.
     SolveRequest nearest = search.request();
@@ -23,16 +21,14 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
     const Result result = solver.find_answer(goal, nearest, workspace, nullptr);
     if (result.success()) add(result.q, layer);
   }
-  if (goal.tips() != nullptr && layer.size() >= kEnoughForTips) {
-    search.screen(layer);
-    search.connect_best(before, layer);
-    if (!layer.empty()) return Status::solved;
+  // Of several tips a search takes far longer than what goes on from the waypoint before.
+  if (goal.tips() != nullptr && layer.size() >= 8 && search.keep_best(before, layer)) {
+    return Status::solved;
   }
   const SolutionSet& found = workspace.collected.found;
   // Of an arm that is not redundant all, which are few but where axes line up.
-  constexpr std::size_t kBranches = 64;
-  const auto candidates = static_cast<std::size_t>(path.candidates);
-  const std::size_t most = goal.is_redundant() ? candidates : std::max(candidates, kBranches);
+  const auto most = static_cast<std::size_t>(goal.is_redundant() ? path.candidates
+                                                                 : std::max(path.candidates, 64));
   const auto is_satisfied = [&](const Collector&) { return found.size() >= most; };
   // Solutions of the database that differ by less in every joint are one.
   const Collector::Aim aim{20 * kSameCandidate, true, goal.is_redundant() ? path.candidates : 0};
@@ -52,11 +48,9 @@ Status search_layer(const Solver::Impl& solver, const Goal& goal, const Layer* b
   const bool any = !layer.empty();
   search.screen(layer);
   const bool kept = !layer.empty();
-  search.connect_best(before, layer);
-  if (kept && layer.empty() && goal.is_redundant()) {
+  if (!search.connect_best(before, layer) && kept && goal.is_redundant()) {
     search.add_in_time(goal, *before, layer);
-    search.screen(layer);
-    search.connect_best(before, layer);
+    search.keep_best(before, layer);
   }
   return kept                                   ? Status::too_fast
          : any                                  ? search.refusal()
@@ -147,7 +141,6 @@ class PathPlan {
   [[nodiscard]] bool jumps(const PathResult& result) {
     // Beside a singularity the longest step is long by itself. Of 480 motions of six joints (60 of
     // irb120, vs060, cvr038 and five random arms) 25 would be made shorter in vain without, 1 is.
-    constexpr double kShorter = 0.9;
     if (!result.success() || count_ == 1 || result.largest_step_waypoint < 0) return false;
     const auto w = static_cast<std::size_t>(result.largest_step_waypoint);
     const JointVector& from = w == 0 ? *path_.start : result.q[w - 1];
@@ -155,7 +148,7 @@ class PathPlan {
       Layer layer;
       if (is_singular(result.q[at])) add_next(halfway(result.q, at), at, layer);
       return std::any_of(layer.begin(), layer.end(), [&](const PathCandidate& each) {
-        return (each.q - other).cwiseAbs().maxCoeff() < kShorter * result.largest_step;
+        return (each.q - other).cwiseAbs().maxCoeff() < 0.9 * result.largest_step;
       });
     };
     return is_shorter(w, from) || (w > 0 && is_shorter(w - 1, result.q[w]));
@@ -165,9 +158,7 @@ class PathPlan {
     const Layer* before = this->before(w, layers_);
     if (before != nullptr && is_swept_) {
       search_.add_on_curve(goal, *before, w, /*with_others=*/true, *workspace_.lanes, layer);
-      search_.screen(layer);
-      search_.connect_best(before, layer);
-      if (!layer.empty()) return Status::solved;
+      if (search_.keep_best(before, layer)) return Status::solved;
     }
     const Status status = search_layer(solver_, goal, before, path_, search_, workspace_, layer);
     return layer.empty() ? status : Status::solved;
@@ -210,10 +201,8 @@ class PathPlan {
     // A round that makes less of it is the last. With 0.97 random pairs of arms moved 1.032 times
     // as far as a known motion, with 0.99 1.009, with 0.997 0.996 times in a quarter more of the
     // time; 4 rounds did 1.018 (python -m bench hands pairs --near 0 --paths 20 --seed 2).
-    constexpr int kRounds = 32;
-    constexpr double kWorthwhile = 0.99;
     const bool makes_up = search_.makes_up();
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < 32; ++round) {
       if (makes_up && result.success()) return;
       std::vector<Layer> layers;
       layers.reserve(count_);
@@ -231,7 +220,7 @@ class PathPlan {
       search_.trace(layers, other);
       const double last = result.move;
       if (makes_up || other.move < last) result = std::move(other);
-      if (!makes_up && !(result.move < kWorthwhile * last)) return;
+      if (!makes_up && !(result.move < 0.99 * last)) return;
     }
   }
 

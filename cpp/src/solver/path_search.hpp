@@ -92,15 +92,13 @@ class PathSearch {
   /// some of the self-motion's other configurations, at each waypoint others.
   void add_on_curve(const Goal& goal, const Layer& before, std::size_t waypoint, bool with_others,
                     Workspace::InLanes& lanes, Layer& layer) const {
-    /// Every so many samples of the sweep are looked at.
-    constexpr int kStride = Sweep::kSamples / 8;
     const Pose Y = lanes.query.reduce(goal.target());
     std::vector<double> q = joint_values(before);
-    const int first = static_cast<int>(waypoint % kStride);
     if (with_others) {
+      const int stride = Sweep::kSamples / 8;
       std::vector<Sweep::Sample> samples;
       lanes.sweep->set_target(Y);
-      lanes.sweep->add_samples(first, kStride, q, samples);
+      lanes.sweep->add_samples(static_cast<int>(waypoint % stride), stride, q, samples);
     }
     const auto dof = static_cast<std::size_t>(model_.dof);
     Work work(0);
@@ -203,13 +201,19 @@ class PathSearch {
         [](const PathCandidate& a, const PathCandidate& b) { return a.cost < b.cost; });
   }
 
-  /// The same, and keeps the cheapest only.
-  void connect_best(const Layer* before, Layer& layer) {
+  /// The same, and keeps the cheapest only; false if there are none.
+  bool connect_best(const Layer* before, Layer& layer) {
     connect(before, layer);
     // Without a start all candidates of the first waypoint are needed.
     if (before == nullptr) first_layer_ = layer.size();
     const std::size_t most = std::max(static_cast<std::size_t>(options_.candidates), first_layer_);
     if (layer.size() > most) layer.resize(most);
+    return !layer.empty();
+  }
+  /// The same of those that are let through.
+  bool keep_best(const Layer* before, Layer& layer) {
+    screen(layer);
+    return connect_best(before, layer);
   }
 
   /// Walks back from the cheapest end, and says if a step is too fast still.

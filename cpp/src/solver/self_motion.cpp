@@ -19,7 +19,6 @@ namespace {
 /// Holds q to the limit that an arc ends at, by a joint that follows the six others, which go to
 /// the goal; where that fails, q stays.
 void hold_to_limit(const Goal& goal, const SelfMotionEnd& end, JointVector& q) {
-  constexpr int kSteps = 4;
   if (end.kind != ArcEnd::limit) return;
   const ChainModel& model = goal.model();
   const Limit limit = model.joints.limit(end.joint, end.coupled_limit);
@@ -34,20 +33,18 @@ void hold_to_limit(const Goal& goal, const SelfMotionEnd& end, JointVector& q) {
     return goal.is_solution(held);
   };
   for (int step = 0; !follow(); ++step) {
-    if (step == kSteps) return;
+    if (step == 4) return;
     Jacobian of_pose;
     const Pose pose = to_pose(model.fk_jacobian(held.data(), of_pose));
+    // Without the column of the joint that follows.
+    const Jacobian of_all = of_pose - of_pose.col(follows) * c.transpose();
+    const int behind = model.dof - 1 - follows;
     Matrix6 J;
-    const auto column = [&](int j) { return j < follows ? j : j - 1; };
-    for (int j = 0; j < model.dof; ++j) {
-      if (j == follows) continue;
-      J.col(column(j)) = of_pose.col(j) - c[j] * of_pose.col(follows);
-    }
+    J << of_all.leftCols(follows), of_all.rightCols(behind);
     const Vector6 move = J.partialPivLu().solve(pose_error(goal.target(), pose));
     if (!move.allFinite()) return;
-    for (int j = 0; j < model.dof; ++j) {
-      if (j != follows) held[j] += move[column(j)];
-    }
+    held.head(follows) += move.head(follows);
+    held.tail(behind) += move.tail(behind);
     held = model.joints.clamp(held);
   }
   q = held;

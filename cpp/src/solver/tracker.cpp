@@ -161,9 +161,6 @@ Result Tracker::follow(const Pose* targets, double dt, const Scene* scene) {
 }
 
 bool Tracker::continue_to(const Goal& goal, double dt, JointVector& q, int& steps) const {
-  /// What is farther from straight on, as a part of the last move, may be the other of two. Of 900
-  /// motions of random arms 2 end elsewhere, with 0.1 it were 6 (as in test_tracker_laws.py).
-  constexpr double kAside = 0.01;
   const JointVector from = q;
   const bool is_reached = converge(goal, kStepsToNext, q, steps);
   // Redundant arms would go on along their self-motions; one that is there has no way to go.
@@ -177,7 +174,9 @@ bool Tracker::continue_to(const Goal& goal, double dt, JointVector& q, int& step
   const JointVector ahead = from + move;
   // Where there is no other, none that would be a turn back, or a jump.
   const double aside = is_reached ? (q - ahead).norm() : length;
-  if (!(aside > kAside * length)) return is_reached;
+  // What is farther from straight on may be the other of two. Of 900 motions of random arms 2 end
+  // elsewhere, with 0.1 it were 6 (as in test_tracker_laws.py).
+  if (!(aside > 0.01 * length)) return is_reached;
   JointVector straight = solver_.robot().all().joints.clamp(ahead);
   if (!converge(goal, kStepsToNext, straight, steps)) return is_reached;
   if (!((straight - ahead).norm() < aside)) return is_reached;
@@ -225,21 +224,19 @@ double Tracker::part_of_way(const Goal& goal, double dt, JointVector& end, int& 
 
 double Tracker::come_closer(const Goal& goal, const JointVector& from, double dt, double part,
                             JointVector& end, int& steps) const {
-  /// The remainder falls by more than this part of it, or the arm rests: rounding is 1e-16 of it,
-  /// and a step of 1 mm towards a target 1e5 m away 2e-8.
-  constexpr double kGain = 1e-12;
-  /// With one, ur5e stays where its nearest place has vanished (test_closest.cpp); else it is
-  /// alike.
-  constexpr int kHalvings = 5;
   const Remainder remainder(goal, to_vector(*closest_, solver_.impl_->rotation_weight()));
   const JointVector longest = goal.joints().longest_moves(dt);
   const JointVector inside = goal.joints().clamp(q_);
   // The way back inside the limits may be up.
   const bool is_inside = (q_ - inside).cwiseAbs().maxCoeff() < kRounding;
   const double here = is_inside ? remainder.value(q_) : kInfinity;
+  // By more than a part of it, or the arm rests: rounding is 1e-16 of it, and a step of 1 mm
+  // towards a target 1e5 m away 2e-8.
+  const double less = (1 - 1e-12) * here;
   const auto falls = [&] {
-    for (int halving = 0; halving < kHalvings; ++halving, part /= 2) {
-      if (part > 0 && remainder.value(q_ + part * (end - q_)) < (1 - kGain) * here) return true;
+    // With one, ur5e stays where its nearest place has vanished (test_closest.cpp).
+    for (int halving = 0; halving < 5; ++halving, part /= 2) {
+      if (part > 0 && remainder.value(q_ + part * (end - q_)) < less) return true;
     }
     return false;
   };

@@ -2,7 +2,6 @@
 // What a solve gives back.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <numeric>
 #include <utility>
 
@@ -12,17 +11,10 @@
 namespace iksel {
 namespace {
 
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 /// Number of characters to insert, remove or replace between two words (Levenshtein 1966).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  constexpr std::size_t kLongest = 100;  // it takes the product of the lengths
-  if (a.size() > kLongest || b.size() > kLongest) return std::max(a.size(), b.size());
+  const std::size_t longer = std::max(a.size(), b.size());
+  if (longer > 100) return longer;  // it takes the product of the lengths
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -38,29 +30,34 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 /// Up to three known names that `name` may mean, the most alike first: a third of the characters
-/// may differ, or one contains the other.
+/// may differ, or one contains the other, if that is no shorter than three characters.
 std::vector<std::string> similar_names(const std::string& name,
                                        const std::vector<std::string>& known) {
-  constexpr std::size_t kMost = 3;
-  constexpr std::size_t kShortestPart = 3;
   const std::string wanted = lower_case(name);
   std::vector<std::pair<std::size_t, std::string>> found;
   for (const std::string& candidate : known) {
     const std::string have = lower_case(candidate);
     const std::size_t distance = edit_distance(wanted, have);
     const bool contained =
-        std::min(wanted.size(), have.size()) >= kShortestPart &&
+        std::min(wanted.size(), have.size()) >= 3 &&
         (have.find(wanted) != std::string::npos || wanted.find(have) != std::string::npos);
     if (contained || distance <= wanted.size() / 3) found.emplace_back(distance, candidate);
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) names.push_back(found[i].second);
+  for (std::size_t i = 0; i < found.size() && i < 3; ++i) names.push_back(found[i].second);
   return names;
 }
 
 }  // namespace
+
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
 
 std::string number_text(double value, int digits) {
   MessageStream text;
@@ -86,13 +83,10 @@ void throw_unknown_name(const std::string& problem, const std::string& name,
 }
 
 std::string list_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 20;
+  const std::size_t listed = std::min<std::size_t>(names.size(), 20);
   std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
-    if (i > 0) text += ", ";
-    text += names[i];
-  }
-  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
+  for (std::size_t i = 0; i < listed; ++i) text += (i > 0 ? ", " : "") + names[i];
+  if (listed < names.size()) text += " and " + std::to_string(names.size() - listed) + " more";
   return text;
 }
 

@@ -19,6 +19,9 @@ class MessageStream : public std::ostringstream {
   MessageStream() { imbue(std::locale::classic()); }
 };
 
+/// ASCII letters in lower case.
+std::string lower_case(std::string text);
+
 /// A number with that many significant digits, the same in every locale.
 std::string number_text(double value, int digits = 6);
 

@@ -17,10 +17,9 @@ namespace iksel {
 
 /// Number of threads that an option means: 0 is one per core. Throws InvalidArgumentError.
 inline int resolve_threads(int threads) {
-  constexpr int kMost = 1024;
-  if (threads < 0 || threads > kMost) {
-    throw InvalidArgumentError("threads: " + std::to_string(threads) + " is not in 0 .. " +
-                               std::to_string(kMost) + " (0: one per core)");
+  if (threads < 0 || threads > 1024) {
+    throw InvalidArgumentError("threads: " + std::to_string(threads) +
+                               " is not in 0 .. 1024 (0: one per core)");
   }
   return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }

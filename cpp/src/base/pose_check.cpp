@@ -13,26 +13,15 @@
 namespace iksel {
 namespace {
 
-/// Deviation that rounding leaves in products of rotations; such a pose is taken bit for bit.
-constexpr double kExact = 1e-12;
-
 bool is_affine(const Pose& pose) {
   const auto& T = pose.matrix();
   return T(3, 0) == 0 && T(3, 1) == 0 && T(3, 2) == 0 && T(3, 3) == 1;
 }
 
-/// Largest element of |R^T R - I|; infinite where R is not finite.
+/// Largest element of |R^T R - I|; infinite where that is not finite.
 double deviation_of(const Eigen::Matrix3d& R) {
-  const auto gram = [&](int i, int k) {
-    return R(0, i) * R(0, k) + R(1, i) * R(1, k) + R(2, i) * R(2, k);
-  };
-  const double xx = gram(0, 0);
-  const double yy = gram(1, 1);
-  const double zz = gram(2, 2);
-  // Squares that overflow make the other elements NaN.
-  if (!(xx + yy + zz < kInfinity)) return kInfinity;
-  const double along = std::max({std::abs(xx - 1), std::abs(yy - 1), std::abs(zz - 1)});
-  return std::max({along, std::abs(gram(0, 1)), std::abs(gram(0, 2)), std::abs(gram(1, 2))});
+  const Eigen::Matrix3d rest = R.transpose() * R - Eigen::Matrix3d::Identity();
+  return rest.allFinite() ? rest.cwiseAbs().maxCoeff() : kInfinity;
 }
 
 }  // namespace
@@ -41,15 +30,12 @@ double rigid_deviation(const Pose& pose) {
   const Eigen::Matrix3d R = pose.linear();
   const Eigen::Vector3d p = pose.translation();
   const bool is_finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-  if (!is_finite || !is_affine(pose) || R.determinant() < 0) {
-    return kInfinity;
-  }
-  return deviation_of(R);
+  return is_finite && is_affine(pose) && R.determinant() >= 0 ? deviation_of(R) : kInfinity;
 }
 
 Rigidity rigidity_of(const Pose& pose) {
   const double deviation = rigid_deviation(pose);
-  if (deviation <= kExact) return Rigidity::exact;
+  if (deviation <= 1e-12) return Rigidity::exact;  // rounding leaves that in products of rotations
   return deviation <= kRigidTolerance ? Rigidity::close : Rigidity::none;
 }
 
@@ -108,8 +94,7 @@ Pose orthonormalized(const Pose& pose, const char* name) {
   // section 8.6).
   Eigen::Matrix3d X = pose.linear();
   X /= std::max(X.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
-  constexpr double kMostCondition = 1e9;
-  if (!(X.norm() * X.inverse().norm() < kMostCondition)) {
+  if (!(X.norm() * X.inverse().norm() < 1e9)) {
     throw_invalid(name, -1, "the matrix in place of the rotation is singular");
   }
   if (X.determinant() < 0) throw_invalid(name, -1, "det R is negative (a reflection)");

@@ -109,9 +109,8 @@ JointVector damped_solve(const JacobianMatrix& J, double lambda, const Vector6& 
 Matrix6 inverse_of(const Matrix6& A) {
   // Gauss and Jordan, in place: where a column of A has gone, one of the inverse is.
   double row[6][6];
-  for (int r = 0; r < 6; ++r) {
-    for (int i = 0; i < 6; ++i) row[r][i] = A(r, i);
-  }
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> rows(*row);
+  rows = A;
   int swapped[6];
   for (int k = 0; k < 6; ++k) {
     int largest = k;
@@ -130,10 +129,7 @@ Matrix6 inverse_of(const Matrix6& A) {
       for (int i = 0; i < 6; ++i) row[r][i] -= factor * row[k][i];
     }
   }
-  Matrix6 inverse;
-  for (int r = 0; r < 6; ++r) {
-    for (int i = 0; i < 6; ++i) inverse(r, i) = row[r][i];
-  }
+  Matrix6 inverse = rows;
   for (int k = 6; k-- > 0;) {
     if (swapped[k] != k) inverse.col(k).swap(inverse.col(swapped[k]));
   }

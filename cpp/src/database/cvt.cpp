@@ -8,7 +8,6 @@
 // order: rounds are spread over threads and give the same bits for any number of them. Lloyd's
 // rounds draw the same points each, and move each generator to the mean of its own of the round.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 

@@ -34,8 +34,7 @@ struct Watched {
 };
 static_assert(std::atomic<std::uintptr_t>::is_always_lock_free);
 
-constexpr std::size_t kMostMappings = 256;
-std::array<Watched, kMostMappings> watched;
+std::array<Watched, 256> watched;
 std::mutex watched_mutex;  ///< of those who add and remove
 std::uintptr_t page_size = 4096;
 struct sigaction previous {};
@@ -148,7 +147,7 @@ Storage map_file(const std::filesystem::path& path) {
   };
   std::shared_ptr<const unsigned char> mapped(static_cast<const unsigned char*>(bytes), unmap);
   if (place == nullptr) {
-    throw_io("map", path, std::to_string(kMostMappings) + " are mapped already");
+    throw_io("map", path, std::to_string(watched.size()) + " are mapped already");
   }
   return {mapped, size, &place->damaged};
 }

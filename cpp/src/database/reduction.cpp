@@ -11,10 +11,6 @@ namespace {
 
 using lanes::Side;
 
-/// A point so near to the first axis, as a part of the weight of rotations, is on it: rounding
-/// leaves no more.
-constexpr double kOnAxis = 1e-9;
-
 /// Of the first joint or the last, if a variable moves it and no other.
 Side side_of(const ChainModel& model, const KernelJoint& joint, int variable) {
   const auto& joints = model.kernel.joints;
@@ -109,7 +105,7 @@ void Reduction::make_key(const Pose& Y, double* key) const {
   const double rho = off_axis(point);
   // A point on the first axis has no direction about it: then that of the last axis, so that poses
   // that differ by the first joint only have one key still.
-  const bool is_on_axis = rho <= kOnAxis * weight;
+  const bool is_on_axis = rho <= kRounding * weight;
   const Eigen::Vector3d& about = is_on_axis ? axis : point;
   const double length = is_on_axis ? off_axis(axis) : rho;
   if (left == Side::rotation && length > 0) {

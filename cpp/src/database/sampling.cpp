@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -13,9 +12,6 @@
 
 namespace iksel {
 namespace {
-
-/// Most joints for which the paper gives grid sizes.
-constexpr int kPaperDof = 7;
 
 /// In doubles: 4^32 does not fit an integer.
 double product(const std::vector<int>& counts) {
@@ -53,51 +49,50 @@ void fill_grid(const SampleSpace& space, const DatabaseOptions& options,
   }
 }
 
-void fill_random(const SampleSpace& space, std::uint64_t seed, std::vector<double>& samples) {
-  Random random(seed);
+/// Fills the samples one after the other, joint j where part(j) in [0, 1) of its range is.
+template <typename Part>
+void fill_by_parts(const SampleSpace& space, std::vector<double>& samples, const Part& part) {
   const std::size_t dof = space.dof();
   for (std::size_t i = 0; i < samples.size(); i += dof) {
     space.draw_inside(&samples[i], [&] {
       for (std::size_t j = 0; j < dof; ++j) {
-        samples[i + j] = random.uniform(space.lower[j], space.upper[j]);
+        samples[i + j] = space.lower[j] + (space.upper[j] - space.lower[j]) * part(j);
       }
     });
   }
 }
 
+void fill_random(const SampleSpace& space, std::uint64_t seed, std::vector<double>& samples) {
+  Random random(seed);
+  fill_by_parts(space, samples, [&](std::size_t) { return random.uniform(); });
+}
+
 /// Shifted by the seed.
 void fill_low_discrepancy(const SampleSpace& space, std::uint64_t seed,
                           std::vector<double>& samples) {
-  const std::size_t dof = space.dof();
-  const std::vector<double> step = low_discrepancy_steps(dof);
+  const std::vector<double> step = low_discrepancy_steps(space.dof());
   Random random(seed);
-  std::vector<double> shift(dof);
+  std::vector<double> shift(space.dof());
   for (double& each : shift) each = random.uniform();
   double index = 0;
-  for (std::size_t i = 0; i < samples.size(); i += dof) {
-    space.draw_inside(&samples[i], [&] {
-      ++index;
-      for (std::size_t j = 0; j < dof; ++j) {
-        const double x = shift[j] + step[j] * index;
-        samples[i + j] = space.lower[j] + (space.upper[j] - space.lower[j]) * (x - std::floor(x));
-      }
-    });
-  }
+  fill_by_parts(space, samples, [&](std::size_t j) {
+    if (j == 0) ++index;
+    const double x = shift[j] + step[j] * index;
+    return x - std::floor(x);
+  });
 }
 
 }  // namespace
 
 std::vector<int> grid_counts(int dof, Scale scale) {
   std::vector<int> counts = paper_counts(dof, scale);
-  if (dof > kPaperDof) {
-    // The paper stops at 7 joints, and the product would explode: lower the largest count, the last
-    // of equals first, until there are no more samples than the paper has for 7 joints.
-    const double most = product(paper_counts(kPaperDof, scale));
-    while (product(counts) > most) {
-      const auto largest = std::max_element(counts.rbegin(), counts.rend());
-      if (*largest == 1) break;
-      --*largest;
-    }
+  // The paper stops at 7 joints, and the product would explode: lower the largest count, the last
+  // of equals first, until there are no more samples than the paper has for 7 joints.
+  const double most = product(paper_counts(std::min(dof, 7), scale));
+  while (product(counts) > most) {
+    const auto largest = std::max_element(counts.rbegin(), counts.rend());
+    if (*largest == 1) break;
+    --*largest;
   }
   return counts;
 }

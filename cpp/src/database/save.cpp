@@ -4,7 +4,6 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <random>
@@ -72,9 +71,7 @@ Descriptor open_named(const fs::path& folder, fs::path& name) {
 bool write_all(const Descriptor& file, const Storage& storage) {
   std::size_t written = 0;
   while (written < storage.size) {
-    constexpr std::size_t kPiece = 1U << 30U;
-    const ssize_t n = ::write(file.get(), storage.bytes.get() + written,
-                              std::min(kPiece, storage.size - written));
+    const ssize_t n = ::write(file.get(), storage.bytes.get() + written, storage.size - written);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     written += static_cast<std::size_t>(n);
@@ -84,9 +81,9 @@ bool write_all(const Descriptor& file, const Storage& storage) {
 
 /// What a path stands for, so that renaming leaves a link what it is.
 fs::path behind_links(fs::path path) {
-  constexpr int kMost = 40;  // they may go in a circle
   std::error_code none;
-  for (int i = 0; i < kMost && fs::is_symlink(path, none); ++i) {
+  // Not for ever: they may go in a circle.
+  for (int i = 0; i < 40 && fs::is_symlink(path, none); ++i) {
     path = path.parent_path() / fs::read_symlink(path, none);
   }
   return path;

@@ -26,16 +26,16 @@ double microseconds(Clock::duration duration) {
 
 /// By KDL's forward kinematics, not by that of the solver, and the limits.
 bool is_solution(KdlChain& kdl, const Solver& solver, const Pose& target, const JointVector& q) {
-  // FK in doubles is good to 1e-14 or so, which is what two implementations may differ by.
-  constexpr double kFkError = 1e-13;
   if (q.size() != solver.robot().dof() || !q.allFinite()) return false;
   const SolverOptions& options = solver.options();
   const TaskSpace space(options.task, options.position_tolerance, options.rotation_tolerance);
   double position = 0;
   double rotation = 0;
   space.measure(target, kdl.fk(q), position, rotation);
-  return position <= options.position_tolerance + kFkError &&
-         rotation <= options.rotation_tolerance + kFkError && solver.robot().within_limits(q);
+  // FK in doubles is good to 1e-14 or so, which is what two implementations may differ by.
+  const auto is_within = [](double error, double most) { return error <= most + 1e-13; };
+  return is_within(position, options.position_tolerance) &&
+         is_within(rotation, options.rotation_tolerance) && solver.robot().within_limits(q);
 }
 
 /// Value at the quantile of sorted times.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kinematics/chain_model.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -68,6 +67,17 @@ struct EulerZxz {
     last = std::atan2(-rest(0, 1), rest(0, 0));
   }
 };
+
+/// Adds a constant turn about the joint's axis.
+void add_turn(KernelJoint& joint, double angle) {
+  if (joint.prismatic) {
+    const double turn = std::atan2(joint.sin_turn, joint.cos_turn) + angle;
+    joint.cos_turn = std::cos(turn);
+    joint.sin_turn = std::sin(turn);
+  } else {
+    joint.offset += angle;
+  }
+}
 
 /// The tool as a rigid transform.
 Pose check_tool(const Pose& T_tip_tcp) {
@@ -184,10 +194,8 @@ void ChainModel::flatten() {
     constant = constant * joint.before * align;
 
     KernelJoint k{};
+    static_cast<Following&>(k) = joint;
     k.variable = joint.variable;
-    k.multiplier = joint.multiplier;
-    k.offset = joint.offset;
-    k.curve = joint.curve;
     k.prismatic = joint.prismatic;
     k.cos_turn = 1;
     if (kernel.joints.empty()) {
@@ -197,24 +205,12 @@ void ChainModel::flatten() {
       // Behind the previous motion stands Trans(p) Rz(first) Rx(alpha) Rz(last). Rz(first) goes to
       // the previous joint, so p is seen from a frame turned by it; Rz(last) stays with this joint.
       const EulerZxz euler(constant.linear());
-      KernelJoint& previous = kernel.joints.back();
       const Eigen::Vector3d p = rotation_z(-euler.first).linear() * constant.translation();
       for (int i = 0; i < 3; ++i) k.p[i] = p[i];
       k.cos_alpha = euler.cos_alpha;
       k.sin_alpha = euler.sin_alpha;
-      if (previous.prismatic) {
-        const double turn = std::atan2(previous.sin_turn, previous.cos_turn) + euler.first;
-        previous.cos_turn = std::cos(turn);
-        previous.sin_turn = std::sin(turn);
-      } else {
-        previous.offset += euler.first;
-      }
-      if (k.prismatic) {
-        k.cos_turn = std::cos(euler.last);
-        k.sin_turn = std::sin(euler.last);
-      } else {
-        k.offset += euler.last;
-      }
+      add_turn(kernel.joints.back(), euler.first);
+      add_turn(k, euler.last);
     }
     kernel.joints.push_back(k);
     constant = align.inverse() * joint.after;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kinematics/joint_space.hpp"
 
-#include "base/constants.hpp"
 #include "base/pace.hpp"
 
 namespace iksel {

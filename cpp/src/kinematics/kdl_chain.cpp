@@ -77,12 +77,9 @@ KdlChain::~KdlChain() = default;
 Pose KdlChain::fk(const JointVector& q) {
   impl_->set(q);
   impl_->fk_solver.JntToCart(impl_->q, impl_->frame);
-  const KDL::Frame& f = impl_->frame;
   Pose pose = Pose::Identity();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) pose.linear()(row, column) = f.M(row, column);
-    pose.translation()[row] = f.p(row);
-  }
+  pose.linear() = Eigen::Map<const Eigen::Matrix3d>(impl_->frame.M.data).transpose();  // by rows
+  pose.translation() = Eigen::Map<const Eigen::Vector3d>(impl_->frame.p.data);
   return pose;
 }
 

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "base/constants.hpp"
@@ -20,12 +19,11 @@
 
 namespace iksel {
 
-struct KernelJoint {
+/// Its motion is motion_of(joint, q[variable]) [rad or m].
+struct KernelJoint : Following {
   double p[3];  ///< from the previous joint's frame [m]
   double cos_alpha, sin_alpha;
-  double multiplier, offset;                 ///< motion = motion_of(joint, q[variable]) [rad or m]
-  std::shared_ptr<const MotionCurve> curve;  ///< null: a straight line
-  double cos_turn, sin_turn;                 ///< constant angle_k of a prismatic joint
+  double cos_turn, sin_turn;  ///< constant angle_k of a prismatic joint
   int variable;
   bool prismatic;
 };

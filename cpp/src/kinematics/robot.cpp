@@ -3,7 +3,6 @@
 #include "iksel/pose.hpp"
 
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "base/message_text.hpp"

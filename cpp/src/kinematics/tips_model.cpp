@@ -155,12 +155,6 @@ void TipsModel::find_shared() {
   }
 }
 
-std::vector<int> TipsModel::places_of(const Robot& part) const {
-  std::vector<int> places;
-  for (const std::string& each : part.joint_names()) places.push_back(joints.find(each));
-  return places;
-}
-
 RobotOptions TipsModel::options_between(const std::string& base, const std::string& tip) const {
   RobotOptions between;
   between.base_link = base;
@@ -190,12 +184,16 @@ void TipsModel::split(Tip& tip) const {
   if (first_own == chain.end() || std::any_of(first_own, chain.end(), is_of_stem)) return;
   auto last = first_own;
   while (!is_of_stem(*last)) --last;
-  const Robot stem = Robot::from_urdf_string(urdf, options_between(options.base_link, last->link));
+  const auto make_part = [&](const RobotOptions& of_part) {
+    const Robot part = Robot::from_urdf_string(urdf, of_part);
+    std::vector<int> places;
+    for (const std::string& each : part.joint_names()) places.push_back(joints.find(each));
+    return ChainPart{coupled(part), places};
+  };
+  tip.stem = make_part(options_between(options.base_link, last->link));
   RobotOptions of_arm = options_between(last->link, tip.chain.robot.tip_link());
   of_arm.tcp = tip.chain.robot.tcp();
-  const Robot arm = Robot::from_urdf_string(urdf, of_arm);
-  tip.stem = ChainPart{coupled(stem), places_of(stem)};
-  tip.arm = ChainPart{coupled(arm), places_of(arm)};
+  tip.arm = make_part(of_arm);
 }
 
 }  // namespace iksel

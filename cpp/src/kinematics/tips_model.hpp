@@ -75,7 +75,6 @@ class TipsModel final : public RobotModel {
   std::vector<int> add_joints(const ChainModel& model);
   void find_shared();
   void split(Tip& tip) const;
-  [[nodiscard]] std::vector<int> places_of(const Robot& part) const;
   [[nodiscard]] RobotOptions options_between(const std::string& base, const std::string& tip) const;
   /// Adds the options' coupled limits to those of all joints, and to the chains that have them.
   void couple_joints();

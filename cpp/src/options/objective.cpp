@@ -7,7 +7,6 @@
 
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
-#include "iksel/robot.hpp"
 
 namespace iksel {
 namespace {
@@ -25,11 +24,7 @@ Eigen::Index find_joint(const Robot& robot, const std::string& name, const char*
 }  // namespace
 
 Objective Objective::near_posture(const JointVector& posture, const JointVector& weights) {
-  Objective objective;
-  objective.kind = Kind::posture;
-  objective.posture = posture;
-  objective.weights = weights;
-  return objective;
+  return {Kind::posture, posture, weights, {}, {}};
 }
 
 Objective Objective::preferred(const Robot& robot, const std::map<std::string, double>& values,
@@ -62,25 +57,13 @@ Objective Objective::preferred(const Robot& robot, const std::map<std::string, d
   return objective;
 }
 
-Objective Objective::far_from_limits() {
-  Objective objective;
-  objective.kind = Kind::limits;
-  return objective;
-}
+Objective Objective::far_from_limits() { return {Kind::limits, {}, {}, {}, {}}; }
 
-Objective Objective::most_manipulable() {
-  Objective objective;
-  objective.kind = Kind::manipulability;
-  return objective;
-}
+Objective Objective::most_manipulable() { return {Kind::manipulability, {}, {}, {}, {}}; }
 
 Objective Objective::custom(std::function<double(const JointVector&)> cost,
                             std::function<JointVector(const JointVector&)> gradient) {
-  Objective objective;
-  objective.kind = Kind::custom;
-  objective.cost = std::move(cost);
-  objective.gradient = std::move(gradient);
-  return objective;
+  return {Kind::custom, {}, {}, std::move(cost), std::move(gradient)};
 }
 
 void Objective::validate(int dof) const {

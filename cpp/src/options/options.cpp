@@ -26,8 +26,12 @@ void check_enum(const char* name, Enum value, Enum last) {
   check_range(name, static_cast<int>(value), 0, static_cast<int>(last));
 }
 
-constexpr int kMostNeighbours = 1'000'000;
-constexpr double kMostDamping = 1e6;
+/// What both strategies have.
+template <typename Strategy>
+void check_common(const Strategy& strategy) {
+  check_range("neighbours", strategy.neighbours, 1, 1'000'000);
+  check_range("damping", strategy.damping, 0.0, 1e6);
+}
 
 /// Throws if an option that nothing reads is not at its default.
 template <typename T>
@@ -45,14 +49,13 @@ bool is_newer(int year) {
 }
 
 void check_ranges(const Paper& paper) {
-  check_range("neighbours", paper.neighbours, 1, kMostNeighbours);
+  check_common(paper);
   check_range("neighbour_radius", paper.neighbour_radius, 0.0, 1e6);
   check_enum("ranking", paper.ranking, Ranking::joint_adjustment);
   check_enum("rotation_difference", paper.rotation_difference, RotationDifference::geodesic);
   check_range("candidates", paper.candidates, 1, 1'000'000);
   check_enum("reselection", paper.reselection, Reselection::farthest);
   check_enum("iteration", paper.iteration, Iteration::lm);
-  check_range("damping", paper.damping, 0.0, kMostDamping);
   check_range("pinv_cutoff", paper.pinv_cutoff, 0.0, 0.5);
   check_range("position_clamp", paper.position_clamp, 1e-6, 1e6);
   check_range("rotation_clamp", paper.rotation_clamp, 1e-6, 1e6);
@@ -65,10 +68,7 @@ void check_ranges(const Paper& paper) {
 
 }  // namespace
 
-void Lanes::validate() const {
-  check_range("neighbours", neighbours, 1, kMostNeighbours);
-  check_range("damping", damping, 0.0, kMostDamping);
-}
+void Lanes::validate() const { check_common(*this); }
 
 void Paper::validate() const {
   check_ranges(*this);

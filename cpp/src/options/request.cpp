@@ -72,12 +72,11 @@ void AnswerCriteria::validate(int dof, int tips) const {
                                    "]: " + number_text(weights[i]) + " is negative");
       }
     }
-    // Moves are measured by squares, which neither overflow nor vanish so.
-    constexpr double kMost = 1e100;
     Eigen::Index i = 0;
     const double most = weights.maxCoeff(&i);
     if (most == 0) throw InvalidArgumentError("weights: all are 0");
-    if (most < 1 / kMost || most > kMost) {
+    // Moves are measured by squares, which neither overflow nor vanish so.
+    if (most < 1e-100 || most > 1e100) {
       throw InvalidArgumentError("weights[" + std::to_string(i) + "]: the largest, " +
                                  number_text(most) + ", is not in 1e-100 .. 1e100");
     }

@@ -58,12 +58,12 @@ ArmShape::ArmShape(const Robot& robot, const RobotSpheres& spheres,
     const lanes::ScenePair pair{find(a), find(b)};
     const auto body = [&](int i) { return links()[static_cast<std::size_t>(i)].body; };
     // What does not move against each other touches always or never.
-    if (body(pair.a) != body(pair.b)) pairs_.add(pair);
+    if (body(pair.a) != body(pair.b)) table_.add_pair(pair);
   }
 }
 
 void ArmShape::make_bodies(const Robot& robot, const LinkPoses& links) {
-  bodies_.push_back({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false, nullptr});
+  bodies_.push_back(body_at());
   places_.push_back({0, root_in_base(robot, links)});
   const auto& steps = links.steps();
   for (std::size_t i = 1; i < steps.size(); ++i) {
@@ -88,14 +88,9 @@ int ArmShape::add_body(const LinkPoses::Step& step, int parent, const Pose& orig
     throw InvalidArgumentError("scene: more than " + std::to_string(lanes::kMaxBodies) +
                                " links of the robot move with the arm");
   }
-  lanes::SceneBody body{};
-  copy_vector(origin.linear().col(0), body.x);
-  copy_vector(origin.linear().col(1), body.y);
-  copy_vector(origin.linear().col(2), body.z);
-  copy_vector(origin.translation(), body.p);
+  lanes::SceneBody body = body_at(origin, parent);
   body.multiplier = step.joint.multiplier;
   body.offset = step.joint.offset;
-  body.parent = parent;
   body.variable = step.variable;
   body.prismatic = step.joint.prismatic;
   body.curve = step.joint.curve.get();
@@ -120,7 +115,7 @@ void ArmShape::attach(const std::string& name, const AttachedObject& object) {
     const auto k = static_cast<std::size_t>(i);
     const bool may = std::find(object.may_touch.begin(), object.may_touch.end(), names_[k]) !=
                      object.may_touch.end();
-    if (!may && links()[k].body != links().back().body) pairs_.add({i, added});
+    if (!may && links()[k].body != links().back().body) table_.add_pair({i, added});
   }
 }
 
@@ -150,7 +145,6 @@ std::vector<std::vector<Sphere>> ArmShape::spheres_at(const std::vector<Pose>& T
 
 void ArmShape::show(lanes::SceneView& view) const {
   table_.show(view);
-  pairs_.show(view);
   view.bodies = static_cast<int>(bodies_.size());
   view.body = bodies_.data();
 }

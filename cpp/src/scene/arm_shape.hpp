@@ -8,8 +8,7 @@
 
 #include "iksel/scene.hpp"
 #include "kinematics/link_poses.hpp"
-#include "scene/ball_table.hpp"
-#include "scene/pair_table.hpp"
+#include "scene/link_table.hpp"
 #include "simd/scene_types.hpp"
 
 namespace iksel {
@@ -20,6 +19,18 @@ inline Pose frame_of(const lanes::SceneBody& body) {
   frame.linear() << to_vector(body.x), to_vector(body.y), to_vector(body.z);
   frame.translation() = to_vector(body.p);
   return frame;
+}
+
+/// The body of a frame in that of another, and no joint; of the base, which has no parent, by
+/// default.
+inline lanes::SceneBody body_at(const Pose& frame = Pose::Identity(), int parent = -1) {
+  lanes::SceneBody body{};
+  copy_vector(frame.linear().col(0), body.x);
+  copy_vector(frame.linear().col(1), body.y);
+  copy_vector(frame.linear().col(2), body.z);
+  copy_vector(frame.translation(), body.p);
+  body.parent = parent;
+  return body;
 }
 
 class ArmShape {
@@ -51,7 +62,7 @@ class ArmShape {
     return spheres_[link];
   }
   [[nodiscard]] const std::vector<lanes::SceneLink>& links() const { return table_.links(); }
-  [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return pairs_.pairs(); }
+  [[nodiscard]] const std::vector<lanes::ScenePair>& pairs() const { return table_.pairs(); }
 
  private:
   /// Where a link of the URDF is on its body.
@@ -76,8 +87,7 @@ class ArmShape {
   std::vector<std::shared_ptr<const MotionCurve>> curves_;  ///< of the bodies
   std::vector<std::string> names_;
   std::vector<std::vector<Sphere>> spheres_;
-  BallTable table_;
-  PairTable pairs_;
+  LinkTable table_;
 };
 
 }  // namespace iksel

@@ -32,7 +32,7 @@ ThreadRoom& thread_room() {
 }
 
 /// Frame of a body in the base frame.
-Pose frame_of(const lanes::SceneRoom& room, int body) {
+Pose frame_at(const lanes::SceneRoom& room, int body) {
   return Pose(Eigen::Map<const Eigen::Matrix4d>(room.frame + lanes::kFrameNumbers * body));
 }
 
@@ -77,7 +77,7 @@ double Scene::Data::clearance_of_points(const lanes::SceneView& view, const lane
   double clearance = kInfinity;
   // Whether a ball of a link touches a cloud's points, or one around its balls may.
   const auto test_of = [&](const Cloud& cloud, int link) {
-    const Pose T_cloud_body = Pose(cloud.T_cloud_base) * frame_of(room, view.link[link].body);
+    const Pose T_cloud_body = Pose(cloud.T_cloud_base) * frame_at(room, view.link[link].body);
     return [&, T_cloud_body](const lanes::SceneBall& ball, bool is_own) {
       const Eigen::Vector3d centre = T_cloud_body * to_vector(ball.centre);
       const double reach = ball.radius - view.smaller + cloud.radius;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/point_grid.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,13 +9,9 @@ namespace {
 
 /// Of cells smaller than a link's spheres there are many to look at [m].
 constexpr double kLeastEdge = 0.02;
-constexpr double kMostCells = 1 << 20;
-/// Of the largest extent.
-constexpr int kCellsAlong = 255;
-/// Cells farther than this along an axis are not looked at; the square is held to kFar2, which says
-/// less than it would but nothing wrong.
+/// Cells farther than this along an axis are not looked at; the square is held to that of this,
+/// which says less than it would but nothing wrong.
 constexpr int kWindow = 11;
-constexpr int kFar2 = kWindow * kWindow;
 
 /// At least so far apart are points in cells whose numbers differ by k, squared.
 constexpr int gap2(int k) {
@@ -24,7 +19,7 @@ constexpr int gap2(int k) {
   return between > 0 ? between * between : 0;
 }
 // The sums that come up fit into a byte.
-static_assert(kFar2 + gap2(kWindow) < 256, "sums of squares");
+static_assert(kWindow * kWindow + gap2(kWindow) < 256, "sums of squares");
 
 }  // namespace
 
@@ -37,26 +32,22 @@ PointGrid::PointGrid(const PointCloud& points)
 }
 
 void PointGrid::size_cells(const Eigen::Vector3d& extent) {
-  // Cells as large as the largest extent are few.
-  edge_ = std::max(kLeastEdge, extent.maxCoeff() / kCellsAlong);
+  edge_ = std::max(kLeastEdge, extent.maxCoeff() / 255);
   const auto cells = [&] {
     double product = 1;
     for (const double length : extent) product *= std::floor(length / edge_) + 1;
     return product;
   };
-  while (cells() > kMostCells) edge_ *= 1.1;
-  for (int i = 0; i < 3; ++i) {
-    count_[static_cast<std::size_t>(i)] = static_cast<int>(extent[i] / edge_) + 1;
-  }
+  while (cells() > 1 << 20) edge_ *= 1.1;
+  count_ = (extent / edge_).array().cast<int>() + 1;
 }
 
 PointGrid::Cell PointGrid::cell_of(const Eigen::Vector3d& c) const {
   Cell cell;
   for (int i = 0; i < 3; ++i) {
-    const int last = count_[static_cast<std::size_t>(i)] - 1;
+    const int last = count_[i] - 1;
     const double place = (c[i] - lower_[i]) / edge_;
-    cell[static_cast<std::size_t>(i)] =
-        place < last ? static_cast<int>(std::max(place, 0.0)) : last;
+    cell[i] = place < last ? static_cast<int>(std::max(place, 0.0)) : last;
   }
   return cell;
 }
@@ -80,7 +71,7 @@ void PointGrid::sort_points(const PointCloud& points) {
 void PointGrid::measure_distances() {
   away2_.resize(first_.size() - 1);
   for (std::size_t i = 0; i < away2_.size(); ++i) {
-    away2_[i] = first_[i + 1] > first_[i] ? 0 : static_cast<std::uint8_t>(kFar2);
+    away2_[i] = first_[i + 1] > first_[i] ? 0 : static_cast<std::uint8_t>(kWindow * kWindow);
   }
   // One axis after the other: the least of a sum is that of the least sums along each.
   std::size_t inner = 1;

@@ -26,14 +26,11 @@ class PointGrid {
   [[nodiscard]] double nearest(const Eigen::Vector3d& c) const;
 
  private:
-  using Cell = std::array<int, 3>;
+  using Cell = Eigen::Array3i;
   /// The cell that holds c, or is nearest to it.
   [[nodiscard]] Cell cell_of(const Eigen::Vector3d& c) const;
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(count_[1]) +
-            static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(count_[0]) +
-           static_cast<std::size_t>(x);
+    return static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x);
   }
   void size_cells(const Eigen::Vector3d& extent);
   void sort_points(const PointCloud& points);
@@ -50,7 +47,7 @@ class PointGrid {
 
   Eigen::Matrix<double, 3, 1, Eigen::DontAlign> lower_, upper_;  ///< corners [m]
   double edge_ = 0;                                              ///< of a cell [m]
-  Cell count_{1, 1, 1};
+  Cell count_;                                                   ///< along each axis
   /// Those of cell i are points_[first_[i]] to points_[first_[i + 1] - 1].
   std::vector<std::uint32_t> first_;
   std::vector<std::array<double, 3>> points_;

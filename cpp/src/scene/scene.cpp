@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/message_text.hpp"
-#include "base/pose_check.hpp"
 #include "iksel/error.hpp"
 #include "iksel/pose.hpp"
 #include "scene/scene_data.hpp"
@@ -53,12 +52,9 @@ Pose check_place(const Pose& T_base_obstacle) {
   return pose;
 }
 
-Obstacle make_obstacle(Obstacle::Shape shape, const Pose& pose, double margin) {
-  Obstacle obstacle;
-  obstacle.shape = shape;
-  obstacle.pose = StoredPose(pose);
-  obstacle.margin = margin;
-  return obstacle;
+Obstacle make_obstacle(Obstacle::Shape shape, double radius, double length, const Pose& pose,
+                       double margin) {
+  return {shape, radius, length, Eigen::Vector3d::Zero(), nullptr, StoredPose(pose), margin};
 }
 
 std::vector<std::string> scene_names(const Scene::Data& data) {
@@ -83,40 +79,32 @@ void RobotSpheres::validate() const {
 }
 
 Obstacle Obstacle::sphere(double radius, const Pose& T_base_obstacle, double margin) {
-  Obstacle obstacle = make_obstacle(Shape::sphere, T_base_obstacle, margin);
-  obstacle.radius = radius;
-  return obstacle;
+  return make_obstacle(Shape::sphere, radius, 0, T_base_obstacle, margin);
 }
 
 Obstacle Obstacle::box(const Eigen::Vector3d& size, const Pose& T_base_obstacle, double margin) {
-  Obstacle obstacle = make_obstacle(Shape::box, T_base_obstacle, margin);
+  Obstacle obstacle = make_obstacle(Shape::box, 0, 0, T_base_obstacle, margin);
   obstacle.size = size;
   return obstacle;
 }
 
 Obstacle Obstacle::capsule(double radius, double length, const Pose& T_base_obstacle,
                            double margin) {
-  Obstacle obstacle = make_obstacle(Shape::capsule, T_base_obstacle, margin);
-  obstacle.radius = radius;
-  obstacle.length = length;
-  return obstacle;
+  return make_obstacle(Shape::capsule, radius, length, T_base_obstacle, margin);
 }
 
 Obstacle Obstacle::cylinder(double radius, double length, const Pose& T_base_obstacle,
                             double margin) {
-  Obstacle obstacle = capsule(radius, length, T_base_obstacle, margin);
-  obstacle.shape = Shape::cylinder;
-  return obstacle;
+  return make_obstacle(Shape::cylinder, radius, length, T_base_obstacle, margin);
 }
 
 Obstacle Obstacle::half_space(const Pose& T_base_obstacle, double margin) {
-  return make_obstacle(Shape::half_space, T_base_obstacle, margin);
+  return make_obstacle(Shape::half_space, 0, 0, T_base_obstacle, margin);
 }
 
 Obstacle Obstacle::point_cloud(PointCloud points, double radius, const Pose& T_base_obstacle,
                                double margin) {
-  Obstacle obstacle = make_obstacle(Shape::points, T_base_obstacle, margin);
-  obstacle.radius = radius;
+  Obstacle obstacle = make_obstacle(Shape::points, radius, 0, T_base_obstacle, margin);
   obstacle.points = std::make_shared<const PointCloud>(std::move(points));
   return obstacle;
 }

@@ -2,12 +2,58 @@
 #include "scene/scene_data.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
-#include "base/message_text.hpp"
+#include "base/constants.hpp"
 #include "iksel/error.hpp"
 
 namespace iksel {
+namespace {
+
+/// A box of which each point is the centre of a ball.
+struct RoundBox {
+  Eigen::Vector3d half;  ///< of its edges [m]
+  double radius;         ///< [m]
+
+  /// A box, a sphere or a capsule.
+  explicit RoundBox(const Obstacle& obstacle) : half(0.5 * obstacle.size), radius(0) {
+    if (obstacle.shape == Obstacle::Shape::box) return;
+    const bool is_capsule = obstacle.shape == Obstacle::Shape::capsule;
+    half = {0, 0, is_capsule ? 0.5 * obstacle.length : 0.0};
+    radius = obstacle.radius;
+  }
+};
+
+/// Distance from the surface of what has that distance along and across its sides, below 0 inside.
+double distance_outside(const Eigen::Vector3d& beyond) {
+  return beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
+}
+
+/// Distance of a point from an obstacle without its margin, below 0 inside [m].
+double signed_distance(const Obstacle& obstacle, const PointGrid* grid,
+                       const Eigen::Vector3d& point) {
+  const Eigen::Vector3d p = Pose(obstacle.pose).inverse() * point;
+  switch (obstacle.shape) {
+    case Obstacle::Shape::sphere:
+    case Obstacle::Shape::box:
+    case Obstacle::Shape::capsule: {
+      const RoundBox box(obstacle);
+      return distance_outside(p.cwiseAbs() - box.half) - box.radius;
+    }
+    case Obstacle::Shape::cylinder: {
+      const double across = p.head<2>().norm() - obstacle.radius;
+      return distance_outside({across, std::abs(p.z()) - 0.5 * obstacle.length, -kInfinity});
+    }
+    case Obstacle::Shape::half_space:
+      return p.z();
+    case Obstacle::Shape::points:
+      return grid->nearest(p) - obstacle.radius;
+  }
+  return kInfinity;
+}
+
+}  // namespace
+
 void Scene::Data::check_name(const std::string& name, bool is_obstacle) const {
   const auto& links = robot.link_names();
   const bool is_link = std::find(links.begin(), links.end(), name) != links.end();
@@ -26,17 +72,13 @@ void Scene::Data::add(const Obstacle& obstacle) {
     case Obstacle::Shape::sphere:
     case Obstacle::Shape::box:
     case Obstacle::Shape::capsule: {
-      const bool is_box = obstacle.shape == Obstacle::Shape::box;
-      const bool is_capsule = obstacle.shape == Obstacle::Shape::capsule;
-      lanes::SceneBlock block{{}, {}, {}, obstacle.margin, 0};
+      const RoundBox box(obstacle);
+      lanes::SceneBlock block{{}, {}, {}, obstacle.margin + box.radius, 0};
       copy_vector(pose.translation(), block.centre);
       for (int i = 0; i < 3; ++i) copy_vector(R.col(i), block.axis[i]);
-      if (is_box) copy_vector(0.5 * obstacle.size, block.half);
-      if (is_capsule) block.half[2] = 0.5 * obstacle.length;
-      if (!is_box) block.radius += obstacle.radius;
+      copy_vector(box.half, block.half);
       // Rounding included.
-      block.around =
-          (Eigen::Map<const Eigen::Vector3d>(block.half).norm() + block.radius) * (1 + 1e-12);
+      block.around = (box.half.norm() + block.radius) * (1 + 1e-12);
       blocks_.push_back(block);
       break;
     }
@@ -100,6 +142,48 @@ void Scene::Data::show_obstacles(lanes::SceneView& view) const {
   view.block = blocks_.data();
   view.cylinder = cylinders_.data();
   view.plane = planes_.data();
+}
+
+void Scene::Data::add_contacts(std::size_t link, const std::vector<Sphere>& placed,
+                               std::vector<Contact>& found) const {
+  for (const auto& [name, obstacle] : obstacles) {
+    const auto grid = grids_.find(obstacle.points);
+    const PointGrid* points = grid == grids_.end() ? nullptr : grid->second.get();
+    double depth = -kInfinity;
+    for (const Sphere& sphere : placed) {
+      const double distance = signed_distance(obstacle, points, sphere.centre);
+      depth = std::max(depth, sphere.radius + obstacle.margin - distance);
+    }
+    if (depth >= 0) found.push_back({arm_.names()[link], name, true, depth});
+  }
+}
+
+void Scene::Data::add_pair_contacts(const std::vector<std::vector<Sphere>>& placed,
+                                    std::vector<Contact>& found) const {
+  for (const lanes::ScenePair& pair : arm_.pairs()) {
+    const auto a = static_cast<std::size_t>(pair.a);
+    const auto b = static_cast<std::size_t>(pair.b);
+    double depth = -kInfinity;
+    for (const Sphere& one : placed[a]) {
+      for (const Sphere& other : placed[b]) {
+        const double distance = (one.centre - other.centre).norm();
+        depth = std::max(depth, one.radius + other.radius - distance);
+      }
+    }
+    if (depth >= 0) found.push_back({arm_.names()[a], arm_.names()[b], false, depth});
+  }
+}
+
+std::vector<Contact> Scene::Data::contacts(const JointVector& q) const {
+  const auto placed = arm_.spheres_at(robot.link_poses(q, other_joints));
+  std::vector<Contact> found;
+  for (std::size_t link = 0; link < placed.size(); ++link) {
+    if (arm_.links()[link].body != 0) add_contacts(link, placed[link], found);
+  }
+  add_pair_contacts(placed, found);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
+  return found;
 }
 
 }  // namespace iksel

@@ -2,7 +2,6 @@
 #include "scene/target_shape.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/constants.hpp"
@@ -10,13 +9,18 @@
 namespace iksel {
 namespace {
 
-/// The ball on the z axis, about which a joint turns, that a ball holds.
-void move_to_axis(Sphere& sphere) {
-  sphere.radius -= sphere.centre.head<2>().norm();
-  sphere.centre.head<2>().setZero();
-}
-
-void remove_empty(std::vector<Sphere>& spheres) {
+/// Keeps of each ball what stays in its place while a body's joint turns, the ball on the axis that
+/// it holds; nothing where the joint slides. Balls go from the body's frame to its parent's, or,
+/// `to_body`, the other way.
+void hold_still(const lanes::SceneBody& body, bool to_body, std::vector<Sphere>& spheres) {
+  if (body.prismatic) spheres.clear();
+  const Pose frame = to_body ? frame_of(body).inverse() : frame_of(body);
+  for (Sphere& sphere : spheres) {
+    if (to_body) sphere.centre = frame * sphere.centre;
+    sphere.radius -= sphere.centre.head<2>().norm();
+    sphere.centre.head<2>().setZero();
+    if (!to_body) sphere.centre = frame * sphere.centre;
+  }
   spheres.erase(std::remove_if(spheres.begin(), spheres.end(),
                                [](const Sphere& sphere) { return !(sphere.radius > 0); }),
                 spheres.end());
@@ -40,23 +44,16 @@ TargetShape::TargetShape(const ArmShape& arm)
   for (const lanes::ScenePair& pair : arm.pairs()) {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
-    if (from_base[a] >= 0 && from_tip[b] >= 0) pairs_.add({from_base[a], from_tip[b]});
-    if (from_base[b] >= 0 && from_tip[a] >= 0) pairs_.add({from_base[b], from_tip[a]});
+    if (from_base[a] >= 0 && from_tip[b] >= 0) table_.add_pair({from_base[a], from_tip[b]});
+    if (from_base[b] >= 0 && from_tip[a] >= 0) table_.add_pair({from_base[b], from_tip[a]});
   }
 }
 
 TargetShape::Part TargetShape::seen_from_base(const ArmShape& arm, std::size_t link) const {
   Part part{0, arm.spheres(link)};
-  for (int b = arm.links()[link].body; b > 0;
-       b = arm.bodies()[static_cast<std::size_t>(b)].parent) {
-    const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(b)];
-    if (body.prismatic) return {};
-    const Pose frame = frame_of(body);
-    for (Sphere& sphere : part.spheres) {
-      move_to_axis(sphere);
-      sphere.centre = frame * sphere.centre;
-    }
-    remove_empty(part.spheres);
+  const auto& bodies = arm.bodies();
+  for (int b = arm.links()[link].body; b > 0; b = bodies[static_cast<std::size_t>(b)].parent) {
+    hold_still(bodies[static_cast<std::size_t>(b)], /*to_body=*/false, part.spheres);
   }
   return part;
 }
@@ -66,14 +63,7 @@ TargetShape::Part TargetShape::seen_from_tip(const ArmShape& arm, std::size_t li
   if (at == to_tip_.end()) return {};
   Part part{1, arm.spheres(link)};
   for (auto next = at; next != to_tip_.begin();) {
-    const lanes::SceneBody& body = arm.bodies()[static_cast<std::size_t>(*--next)];
-    if (body.prismatic) return {};
-    const Pose frame = frame_of(body).inverse();
-    for (Sphere& sphere : part.spheres) {
-      sphere.centre = frame * sphere.centre;
-      move_to_axis(sphere);
-    }
-    remove_empty(part.spheres);
+    hold_still(arm.bodies()[static_cast<std::size_t>(*--next)], /*to_body=*/true, part.spheres);
   }
   return part;
 }
@@ -90,17 +80,9 @@ int TargetShape::add(Part part) {
 bool TargetShape::show(const Pose& T_base_tip, double position, double rotation, Bodies& bodies,
                        lanes::SceneView& view) const {
   table_.show(view);
-  pairs_.show(view);
   view.smaller = position + rotation * reach_;
   if (!(smallest_ > view.smaller)) return false;
-  const Pose frame = T_base_tip * Pose(T_tip_body_);
-  bodies.fill({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, 0, 0, -1, 0, false, nullptr});
-  lanes::SceneBody& tip = bodies[1];
-  copy_vector(frame.linear().col(0), tip.x);
-  copy_vector(frame.linear().col(1), tip.y);
-  copy_vector(frame.linear().col(2), tip.z);
-  copy_vector(frame.translation(), tip.p);
-  tip.parent = 0;
+  bodies = {body_at(), body_at(T_base_tip * Pose(T_tip_body_), 0)};
   view.bodies = static_cast<int>(bodies.size());
   view.body = bodies.data();
   return true;

@@ -40,8 +40,7 @@ class TargetShape {
   std::vector<int> to_tip_;  ///< bodies between the base and the tip, the latter first
   double reach_ = 0;         ///< of the tip's balls from its origin [m]
   double smallest_;          ///< radius of the balls [m]
-  BallTable table_;
-  PairTable pairs_;
+  LinkTable table_;
 };
 
 }  // namespace iksel

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "structure/closed_form.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "base/constants.hpp"
@@ -209,7 +208,7 @@ std::optional<ClosedFormChain> look_from(const ChainModel& model, const Complete
   }
   AxisPattern pattern(std::move(axes), model.reach, tolerance);
   const bool has_residual = sought == Sought::residual;
-  const auto closure = has_residual ? pattern.find_sweep() : pattern.find_closure();
+  const auto closure = pattern.find_closure(has_residual);
   if (!closure) return std::nullopt;
   for (int i = 0; i < kPoseJoints; ++i) chain.joints[i] = joint(before + i);
   if (has_residual) {

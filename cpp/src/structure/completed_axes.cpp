@@ -6,9 +6,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kWanted = kPoseJoints;
 /// The rotations that a point does not feel.
-constexpr std::size_t kAboutPoint = 3;
+constexpr int kAboutPoint = 3;
 
 class Completion {
  public:
@@ -24,13 +23,13 @@ class Completion {
     std::vector<CompletedAxes> ways;
     for (const Vector3d& point : places_of_locked()) {
       CompletedAxes way{chain_, free_};
-      while (way.axes.h.size() + free.size() < kWanted) append_across(way.axes, point);
+      while (way.axes.h.size() + free.size() < kPoseJoints) append_across(way.axes, point);
       for (const Vector3d& direction : free) {
         way.free |= 1U << way.axes.h.size();
         way.axes.h.push_back(direction);
         way.axes.p.emplace_back(tcp_.translation());
       }
-      if (way.axes.h.size() == kWanted) ways.push_back(std::move(way));
+      if (way.axes.h.size() == kPoseJoints) ways.push_back(std::move(way));
     }
     return ways;
   }
@@ -50,9 +49,9 @@ class Completion {
     while (moving > 0 && joints_ - moving < kAboutPoint && passes_tcp(moving - 1)) {
       free_ |= 1U << --moving;
     }
-    if (moving != kWanted - kAboutPoint) return {};
+    if (moving != kPoseJoints - kAboutPoint) return {};
     ScrewAxes wrist = chain_;
-    while (wrist.h.size() < kWanted) append_across(wrist, tcp_.translation());
+    while (wrist.h.size() < kPoseJoints) append_across(wrist, tcp_.translation());
     return with({wrist.h.begin() + static_cast<std::ptrdiff_t>(joints_), wrist.h.end()});
   }
 
@@ -75,7 +74,7 @@ class Completion {
   [[nodiscard]] std::vector<Vector3d> places_of_locked() const {
     const std::size_t last = joints_ - 1;
     std::vector<Vector3d> places;
-    if (joints_ == kWanted - kAboutPoint) {
+    if (joints_ == kPoseJoints - kAboutPoint) {
       places.emplace_back(chain_.p[last] + reach_ * chain_.h[last].unitOrthogonal());
       return places;
     }
@@ -98,10 +97,7 @@ class Completion {
 
 std::vector<CompletedAxes> complete_axes(const ChainModel& model, const Task& task,
                                          double tolerance) {
-  if (model.dof < static_cast<int>(kWanted - kAboutPoint) ||
-      model.dof > static_cast<int>(kWanted)) {
-    return {};
-  }
+  if (model.dof < kPoseJoints - kAboutPoint || model.dof > kPoseJoints) return {};
   Completion completion(model, tolerance);
   if (task.is_full_pose()) return completion.with({});
   if (task == Task::position_only()) return completion.for_position();

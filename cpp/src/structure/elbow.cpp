@@ -23,7 +23,7 @@ std::optional<Elbow> Elbow::of(const ChainModel& model) {
   // Whether the three axes of shoulder and wrist meet in one point each.
   const auto do_meet = [&](double tolerance) {
     const AxisPattern pattern(axes, model.reach, tolerance);
-    return pattern.three_meet(0) && pattern.three_meet(4);
+    return pattern.has({AxisRun::Lie::meet, 0, 3}) && pattern.has({AxisRun::Lie::meet, 4, 3});
   };
   if (!do_meet(kSweptTolerance)) return std::nullopt;
   elbow.shoulder_ = axes.middle(0, 1);

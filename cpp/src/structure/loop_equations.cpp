@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/constants.hpp"
+#include "base/plain_vector.hpp"
 #include "base/rotation.hpp"
 #include "structure/closed_form.hpp"
 
@@ -70,10 +71,8 @@ Eigen::Matrix<double, kInvariant, kInvariant + 1> moved(const Pose& motion) {
 /// What three axes from one on are to each other.
 lanes::LoopForm::Rest rest_of(const AxisPattern& pattern, std::size_t first) {
   using Rest = lanes::LoopForm::Rest;
-  if (pattern.three_meet(first)) return Rest::meet;
-  const bool are_parallel =
-      pattern.are_parallel(first, first + 1) && pattern.are_parallel(first + 1, first + 2);
-  return are_parallel ? Rest::parallel : Rest::anyhow;
+  if (pattern.has({AxisRun::Lie::meet, first, 3})) return Rest::meet;
+  return pattern.has({AxisRun::Lie::parallel, first, 3}) ? Rest::parallel : Rest::anyhow;
 }
 
 }  // namespace
@@ -84,17 +83,13 @@ LoopEquations::LoopEquations(const ScrewAxes& axes, double unit, int swept)
   form_.before = (kPoseJoints - swept) % kPoseJoints;
   for (int i = 0; i < kPoseJoints; ++i) {
     const auto joint = static_cast<std::size_t>((swept + i) % kPoseJoints);
-    const Vector3d p = axes.p[joint] / unit;
-    for (int k = 0; k < 3; ++k) {
-      form_.h[i][k] = axes.h[joint][k];
-      form_.p[i][k] = p[k];
-    }
+    copy_vector(axes.h[joint], form_.h[i]);
+    copy_vector(axes.p[joint] / unit, form_.p[i]);
   }
   // The target does not stand between these.
   const auto last_three = static_cast<std::size_t>((swept + 3) % kPoseJoints);
   form_.rest = rest_of(AxisPattern(axes, unit, kStructureTolerance), last_three);
-  const Vector3d across = Vector3d(form_.h[3]).unitOrthogonal();
-  for (int k = 0; k < 3; ++k) form_.across[k] = across[k];
+  copy_vector(Vector3d(form_.h[3]).unitOrthogonal(), form_.across);
   make_points();
   make_equations();
   const auto n = static_cast<int>(points_.cols());
@@ -179,10 +174,8 @@ void LoopEquations::make_equations() {
 void LoopEquations::set_target(const Pose& Y, lanes::LoopTarget& target) const {
   const Matrix3d R = end_.linear() * Y.linear().transpose();
   const Vector3d t = end_.translation() - R * (Y.translation() / unit_);
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) target.R[k][i] = R(i, k);
-    target.t[k] = t[k];
-  }
+  for (int k = 0; k < 3; ++k) copy_vector(R.col(k), target.R[k]);
+  copy_vector(t, target.t);
   Pose motion = Pose::Identity();
   motion.linear() = R;
   motion.translation() = t;

@@ -10,6 +10,7 @@ namespace iksel {
 
 using Eigen::Vector3d;
 using lanes::Closure;
+using Lie = AxisRun::Lie;
 
 ScrewAxes ScrewAxes::of(const ChainModel& model) {
   KernelChain chain = model.kernel;
@@ -56,22 +57,27 @@ bool AxisPattern::is_on(const Vector3d& point, std::size_t i) const {
   return axes_.distance(i, point) <= tolerance_ * reach_;
 }
 
-bool AxisPattern::meet(std::size_t i, std::size_t j) const {
-  return axes_.angle(i, j) > kClearlyNotParallel && is_on(axes_.middle(i, j), j);
+bool AxisPattern::has(const AxisRun& run) const {
+  const std::size_t last = run.first + run.count - 1;
+  for (std::size_t i = run.first; i < last; ++i) {
+    const bool is_so = run.lie == Lie::parallel ? are_parallel(i, i + 1)
+                                                : axes_.angle(i, i + 1) > kClearlyNotParallel &&
+                                                      is_on(axes_.middle(i, i + 1), i + 1);
+    if (!is_so) return false;
+  }
+  return run.lie == Lie::parallel || is_on(axes_.middle(run.first, run.first + 1), last);
 }
 
-bool AxisPattern::three_meet(std::size_t i) const {
-  return meet(i, i + 1) && meet(i + 1, i + 2) && is_on(axes_.middle(i, i + 1), i + 2);
-}
-
-void AxisPattern::join(std::size_t i, std::size_t more) {
-  const Vector3d middle = axes_.middle(i, i + 1);
-  for (std::size_t k = i; k <= i + 1 + more; ++k) axes_.p[k] = middle;
-}
-
-void AxisPattern::align(std::size_t i, std::size_t j) {
-  if (axes_.angle(i, j) <= kStructureTolerance) return;
-  axes_.h[j] = axes_.h[i].dot(axes_.h[j]) < 0 ? -axes_.h[i] : axes_.h[i];
+void AxisPattern::set_right(const AxisRun& run) {
+  const Vector3d h = axes_.h[run.first];
+  const Vector3d middle = axes_.middle(run.first, run.first + 1);
+  for (std::size_t k = run.first; k < run.first + run.count; ++k) {
+    if (run.lie == Lie::meet) {
+      axes_.p[k] = middle;
+    } else if (axes_.angle(run.first, k) > kStructureTolerance) {
+      axes_.h[k] = h.dot(axes_.h[k]) < 0 ? -h : h;
+    }
+  }
 }
 
 double AxisPattern::deviation() const {
@@ -86,43 +92,32 @@ double AxisPattern::deviation(std::size_t i) const {
   return axes_.angle(1, 2) + axes_.distance(i + 1, axes_.p[i]) / reach_;
 }
 
-std::optional<Closure> AxisPattern::find_closure() {
-  if (are_parallel(1, 2) && are_parallel(2, 3) && meet(4, 5) && !are_parallel(0, 1)) {
-    align(1, 2);
-    align(1, 3);
-    join(4);
-    return Closure::three_parallel;
-  }
-  if (!three_meet(3)) return std::nullopt;
-  join(3, 1);
-  if (are_parallel(1, 2) && !are_parallel(0, 1)) {
-    align(1, 2);
-    return Closure::parallel_23;
-  }
-  if (meet(0, 1)) {
-    join(0);
-    return Closure::intersect_12;
-  }
-  if (meet(1, 2)) {
-    join(1);
-    return Closure::intersect_23;
-  }
-  if (are_parallel(0, 1) && !are_parallel(1, 2)) {
-    align(0, 1);
-    return Closure::parallel_12;
-  }
-  return std::nullopt;
+const std::vector<AxisRule>& axis_rules() {
+  static const std::vector<AxisRule> kRules = {
+      {Closure::three_parallel, {{Lie::parallel, 1, 3}, {Lie::meet, 4, 2}}, {0}},
+      {Closure::parallel_23, {{Lie::meet, 3, 3}, {Lie::parallel, 1, 2}}, {0}},
+      {Closure::intersect_12, {{Lie::meet, 3, 3}, {Lie::meet, 0, 2}}, {}},
+      {Closure::intersect_23, {{Lie::meet, 3, 3}, {Lie::meet, 1, 2}}, {}},
+      {Closure::parallel_12, {{Lie::meet, 3, 3}, {Lie::parallel, 0, 2}}, {1}},
+      {Closure::sweep_4, {{Lie::parallel, 1, 2}, {Lie::meet, 4, 2}}, {0}},
+      {Closure::sweep_6, {{Lie::parallel, 1, 2}, {Lie::meet, 3, 2}}, {0, 4}},
+  };
+  return kRules;
 }
 
-std::optional<Closure> AxisPattern::find_sweep() {
-  if (!are_parallel(1, 2) || are_parallel(0, 1) || are_parallel(4, 5)) return std::nullopt;
-  if (meet(4, 5)) {
-    join(4);
-    return Closure::sweep_4;
-  }
-  if (meet(3, 4)) {
-    join(3);
-    return Closure::sweep_6;
+std::optional<Closure> AxisPattern::find_closure(bool is_swept) {
+  for (const auto& [closure, runs, bends] : axis_rules()) {
+    if ((closure == Closure::sweep_4 || closure == Closure::sweep_6) != is_swept) continue;
+    if (!std::all_of(runs.begin(), runs.end(), [&](const AxisRun& run) { return has(run); }) ||
+        std::any_of(bends.begin(), bends.end(),
+                    [&](std::size_t i) { return are_parallel(i, i + 1); })) {
+      continue;
+    }
+    for (const AxisRun& run : runs) {
+      // What is found by sweeps is refined, and how far these are from parallel is measured.
+      if (run.lie == Lie::meet || !is_swept) set_right(run);
+    }
+    return closure;
   }
   return std::nullopt;
 }

@@ -37,20 +37,33 @@ struct ScrewAxes {
   }
 };
 
+/// Two or three axes of a form, one after the other and counted from 0, and how they lie.
+struct AxisRun {
+  enum class Lie { parallel, meet } lie;  ///< meet: all in one point
+  std::size_t first, count;
+};
+
+/// How axes have to lie for a closure.
+struct AxisRule {
+  lanes::Closure closure;
+  std::vector<AxisRun> runs;
+  std::vector<std::size_t> bends;  ///< axes that are not parallel to the next
+};
+
+/// Of all closures but the loop's, what is preferred first.
+const std::vector<AxisRule>& axis_rules();
+
 /// Tells how the axes of six joints lie, and moves their points to where they meet.
 class AxisPattern {
  public:
   /// `tolerance`: of angles [rad], and of lengths in units of the reach [m].
   AxisPattern(ScrewAxes axes, double reach, double tolerance);
 
-  /// What closes the form, with the points where they are to be.
-  std::optional<lanes::Closure> find_closure();
-  /// What closes it for an angle of one joint.
-  std::optional<lanes::Closure> find_sweep();
+  /// What closes the form, at once or for each angle of a joint that is swept, with the points
+  /// where they are to be.
+  std::optional<lanes::Closure> find_closure(bool is_swept);
 
-  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const;
-  /// Whether axes i, i + 1 and i + 2 meet in one point.
-  [[nodiscard]] bool three_meet(std::size_t i) const;
+  [[nodiscard]] bool has(const AxisRun& run) const;
 
   [[nodiscard]] const ScrewAxes& axes() const { return axes_; }
   /// By how much the pose of an arm with the axes as they were moved may differ from that of the
@@ -62,12 +75,11 @@ class AxisPattern {
   [[nodiscard]] double deviation(std::size_t i) const;
 
  private:
-  [[nodiscard]] bool meet(std::size_t i, std::size_t j) const;
+  [[nodiscard]] bool are_parallel(std::size_t i, std::size_t j) const;
   [[nodiscard]] bool is_on(const Eigen::Vector3d& point, std::size_t i) const;
-  /// Where axes i and i + 1 meet becomes the point on both, and on `more` others.
-  void join(std::size_t i, std::size_t more = 0);
-  /// Axis j takes the direction of i, or the opposite one.
-  void align(std::size_t i, std::size_t j);
+  /// Has all axes take the direction of the first, or the opposite one; or the point where the
+  /// first two meet.
+  void set_right(const AxisRun& run);
 
   ScrewAxes given_;
   ScrewAxes axes_;

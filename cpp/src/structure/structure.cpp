@@ -2,8 +2,6 @@
 #include "iksel/structure.hpp"
 
 #include <algorithm>
-#include <map>
-#include <utility>
 #include <vector>
 
 #include "structure/closed_form.hpp"
@@ -11,27 +9,16 @@
 namespace iksel {
 namespace {
 
-using lanes::Closure;
-
 /// "axes 2 and 3 are parallel, 4, 5 and 6 meet", counted from 1 along the chain.
 std::string describe_axes(const ClosedFormChain& chain) {
-  constexpr const char* kMeet = " meet";
-  constexpr const char* kParallel = " are parallel";
-  // Axes of the form, counted from 0.
-  using Clauses = std::vector<std::pair<std::vector<int>, const char*>>;
-  const std::map<Closure, Clauses> all = {
-      {Closure::three_parallel, {{{1, 2, 3}, kParallel}, {{4, 5}, kMeet}}},
-      {Closure::parallel_23, {{{3, 4, 5}, kMeet}, {{1, 2}, kParallel}}},
-      {Closure::parallel_12, {{{3, 4, 5}, kMeet}, {{0, 1}, kParallel}}},
-      {Closure::intersect_12, {{{3, 4, 5}, kMeet}, {{0, 1}, kMeet}}},
-      {Closure::intersect_23, {{{3, 4, 5}, kMeet}, {{1, 2}, kMeet}}},
-      {Closure::sweep_4, {{{1, 2}, kParallel}, {{4, 5}, kMeet}}},
-      {Closure::sweep_6, {{{1, 2}, kParallel}, {{3, 4}, kMeet}}},
-  };
+  const std::vector<AxisRule>& rules = axis_rules();
+  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const AxisRule& each) {
+    return each.closure == chain.form.closure;
+  });
   std::string text;
-  for (const auto& [axes, how] : all.at(chain.form.closure)) {
+  for (const AxisRun& run : rule->runs) {
     std::vector<int> joints;
-    for (const int i : axes) joints.push_back(chain.joints[i] + 1);
+    for (std::size_t i = 0; i < run.count; ++i) joints.push_back(chain.joints[run.first + i] + 1);
     std::sort(joints.begin(), joints.end());
     // Those that complete the chain are no joints.
     if (joints.back() > chain.dof) continue;
@@ -40,7 +27,7 @@ std::string describe_axes(const ClosedFormChain& chain) {
       if (k > 0) text += k + 1 < joints.size() ? ", " : " and ";
       text += std::to_string(joints[k]);
     }
-    text += how;
+    text += run.lie == AxisRun::Lie::meet ? " meet" : " are parallel";
   }
   return text;
 }

@@ -66,7 +66,7 @@ class ChainReader {
   ChainReader(const urdf::ModelInterface& model, RobotOptions& options)
       : model_(model),
         options_(options),
-        curves_(check_mimic_curves(model, options.mimic_curves)) {}
+        motions_(check_mimic_curves(model, options.mimic_curves)) {}
 
   ChainSpec read() {
     check_default_limits(options_);
@@ -76,10 +76,7 @@ class ChainReader {
     if (options_.base_link.empty()) options_.base_link = model_.getRoot()->name;
     if (options_.tip_link.empty()) options_.tip_link = only_tip(tree);
     for (const auto& [name, value] : options_.locked_joints) {
-      if (!model_.joints_.count(name)) {
-        throw_unknown_name("locked joint '" + name + "' is not in the URDF", name,
-                           joint_names_of(model_));
-      }
+      find_joint(model_, name, "locked joint '" + name + "' is not in the URDF");
       if (!(std::abs(value) <= kMaxCoordinate)) {
         throw InvalidArgumentError("locked joint '" + name + "': its value is " +
                                    too_large_text(value));
@@ -136,57 +133,43 @@ class ChainReader {
   }
 
   void add_joint(const urdf::Joint& joint, bool upwards) {
-    ChainJoint segment;
-    segment.name = joint.name;
-    segment.link = upwards ? joint.parent_link_name : joint.child_link_name;
-    const Eigen::Isometry3d origin = origin_of(joint);
-    // Parent -> child is origin * motion(q); the way up is its inverse, motion(-q) * origin^-1.
-    (upwards ? segment.after : segment.before) = upwards ? origin.inverse() : origin;
-
-    switch (joint.type) {
-      case urdf::Joint::FIXED:
-        segment.fixed = true;
-        spec_.joints.push_back(segment);
-        return;
-      case urdf::Joint::REVOLUTE:
-      case urdf::Joint::CONTINUOUS:
-        break;
-      case urdf::Joint::PRISMATIC:
-        segment.prismatic = true;
-        break;
-      default:
-        throw UrdfError(
-            "joint '" + joint.name + "' is " + joint_type_name(joint.type) +
-            "; only revolute, continuous, prismatic and fixed joints can be solved: choose "
-            "a base link behind it");
+    const LinkJoint read = read_joint(model_, joint, motions_);
+    if (!read.moves && joint.type != urdf::Joint::FIXED) {
+      throw UrdfError("joint '" + joint.name + "' is " + joint_type_name(joint.type) +
+                      "; only revolute, continuous, prismatic and fixed joints can be solved: "
+                      "choose a base link behind it");
     }
+    ChainJoint& segment = spec_.joints.emplace_back();
+    static_cast<Following&>(segment) = read;
+    segment.name = read.name;
+    segment.link = upwards ? joint.parent_link_name : joint.child_link_name;
+    // Parent -> child is origin * motion(q); the way up is its inverse, motion(-q) * origin^-1.
+    (upwards ? segment.after : segment.before) = upwards ? read.origin.inverse() : read.origin;
+    segment.fixed = !read.moves;
+    if (segment.fixed) return;
+    segment.axis = (upwards ? -1.0 : 1.0) * read.axis;
+    segment.prismatic = read.prismatic;
 
-    segment.axis = axis_of(joint);
-    if (upwards) segment.axis = -segment.axis;
-
-    const Motion motion = resolve_mimic(model_, curves_, joint, mimics_);
-    static_cast<Following&>(segment) = motion;
-    const auto locked = options_.locked_joints.find(motion.source->name);
+    const auto locked = options_.locked_joints.find(read.source);
     const auto own_lock = options_.locked_joints.find(joint.name);
     if (own_lock != options_.locked_joints.end()) {
       lock(segment, own_lock->second);
     } else if (locked != options_.locked_joints.end()) {
-      check_lock(joint, motion, locked->second);
-      lock(segment, motion_of(motion, locked->second));
+      check_lock(read, locked->second);
+      lock(segment, motion_of(read, locked->second));
     } else {
-      segment.variable = variable_of(*motion.source);
-      narrow_by_follower(joint, motion, options_, spec_.variables[segment.variable]);
+      segment.variable = variable_of(*model_.joints_.at(read.source));
+      narrow_by_follower(joint, read, options_, spec_.variables[segment.variable]);
     }
-    spec_.joints.push_back(segment);
   }
 
   /// A curve is known between its ends only.
-  static void check_lock(const urdf::Joint& joint, const Motion& motion, double value) {
-    if (!motion.curve) return;
-    const double lower = motion.curve->lower();
-    const double upper = motion.curve->upper();
+  static void check_lock(const LinkJoint& joint, double value) {
+    if (!joint.curve) return;
+    const double lower = joint.curve->lower();
+    const double upper = joint.curve->upper();
     if (value >= lower && value <= upper) return;
-    throw InvalidArgumentError("locked joint '" + motion.source->name + "': " + number_text(value) +
+    throw InvalidArgumentError("locked joint '" + joint.source + "': " + number_text(value) +
                                " is beyond the curve by which '" + joint.name +
                                "' follows it, from " + number_text(lower) + " to " +
                                number_text(upper));
@@ -209,8 +192,7 @@ class ChainReader {
 
   const urdf::ModelInterface& model_;
   RobotOptions& options_;
-  CheckedCurves curves_;
-  ResolvedMimics mimics_;
+  Motions motions_;
   ChainSpec spec_;
   std::map<const urdf::Joint*, int> places_;  ///< of joints among the variables
 };

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "base/constants.hpp"
 #include "base/message_text.hpp"
@@ -71,28 +69,14 @@ bool are_usable(double lower, double upper) {
   return std::isfinite(lower) && std::isfinite(upper) && lower < upper;
 }
 
-void narrow_to_ends(const MotionCurve& curve, ChainVariable& variable) {
-  for (double* lower : {&variable.lower, &variable.soft_lower}) {
-    *lower = std::max(*lower, curve.lower());
-  }
-  for (double* upper : {&variable.upper, &variable.soft_upper}) {
-    *upper = std::min(*upper, curve.upper());
-  }
-  if (variable.type == JointType::continuous) variable.type = JointType::revolute;
-  // Else there is nothing to narrow.
-  check_limits(variable);
+void narrow(double lower, double upper, ChainVariable& variable) {
+  variable.lower = std::max(variable.lower, lower);
+  variable.soft_lower = std::max(variable.soft_lower, lower);
+  variable.upper = std::min(variable.upper, upper);
+  variable.soft_upper = std::min(variable.soft_upper, upper);
 }
 
-const urdf::Joint& followed_by(const urdf::ModelInterface& model, const urdf::Joint& joint) {
-  const std::string& name = joint.mimic->joint_name;
-  const auto it = model.joints_.find(name);
-  if (it != model.joints_.end()) return *it->second;
-  throw_unknown_name("joint '" + joint.name + "' mimics '" + name + "', which is not in the URDF",
-                     name, joint_names_of(model));
-}
-
-}  // namespace
-
+/// Pose of the joint in its parent link.
 Eigen::Isometry3d origin_of(const urdf::Joint& joint) {
   const urdf::Pose& pose = joint.parent_to_joint_origin_transform;
   const urdf::Rotation& r = pose.rotation;
@@ -105,6 +89,7 @@ Eigen::Isometry3d origin_of(const urdf::Joint& joint) {
   return T;
 }
 
+/// Unit vector about or along which the joint moves.
 Eigen::Vector3d axis_of(const urdf::Joint& joint) {
   const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
   if (!(axis.norm() >= 1e-9 && axis.norm() <= kMaxCoordinate)) {
@@ -114,20 +99,33 @@ Eigen::Vector3d axis_of(const urdf::Joint& joint) {
   return axis.normalized();
 }
 
-Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
-                     const urdf::Joint& joint, ResolvedMimics& known) {
+}  // namespace
+
+const urdf::Joint& find_joint(const urdf::ModelInterface& model, const std::string& name,
+                              const std::string& problem) {
+  const auto it = model.joints_.find(name);
+  if (it != model.joints_.end()) return *it->second;
+  throw_unknown_name(problem, name, joint_names_of(model));
+}
+
+bool has_value(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
+Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint, Motions& known) {
   std::vector<const urdf::Joint*> path{&joint};
   while (known.count(path.back()) == 0) {
     const urdf::Joint& last = *path.back();
-    const auto curve = curves.find(last.name);
-    if (curve != curves.end()) {
-      known[&last] = Motion{{1.0, 0.0, curve->second.curve}, curve->second.source};
-    } else if (!last.mimic) {
+    if (!last.mimic) {
       known[&last] = Motion{{}, &last};
     } else if (path.size() > model.joints_.size()) {
       throw UrdfError("joint '" + joint.name + "' mimics itself through a circle of joints");
     } else {
-      path.push_back(&followed_by(model, last));
+      const std::string& followed = last.mimic->joint_name;
+      path.push_back(&find_joint(
+          model, followed,
+          "joint '" + last.name + "' mimics '" + followed + "', which is not in the URDF"));
     }
   }
   Motion motion = known[path.back()];
@@ -143,13 +141,25 @@ Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& cur
     throw UrdfError("joint '" + joint.name + "': its mimic multiplier or offset is " +
                     too_large_text(number));
   }
-  const auto type = motion.source->type;
-  if (type != urdf::Joint::REVOLUTE && type != urdf::Joint::CONTINUOUS &&
-      type != urdf::Joint::PRISMATIC) {
+  if (!has_value(*motion.source)) {
     throw UrdfError("joint '" + joint.name + "' mimics '" + motion.source->name + "', which is " +
-                    joint_type_name(type));
+                    joint_type_name(motion.source->type));
   }
   return motion;
+}
+
+LinkJoint read_joint(const urdf::ModelInterface& model, const urdf::Joint& joint, Motions& known) {
+  LinkJoint out;
+  out.name = out.source = joint.name;
+  out.origin = origin_of(joint);
+  out.prismatic = joint.type == urdf::Joint::PRISMATIC;
+  out.moves = has_value(joint);
+  if (!out.moves) return out;
+  out.axis = axis_of(joint);
+  const Motion motion = resolve_mimic(model, joint, known);
+  out.source = motion.source->name;
+  static_cast<Following&>(out) = motion;
+  return out;
 }
 
 ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& options) {
@@ -165,21 +175,20 @@ ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& option
                     "at a value by locked_joints");
   }
   const auto [least, most] = *options.default_limits;
-  for (double* lower : {&variable.lower, &variable.soft_lower}) {
-    if (!has_lower) *lower = std::max(*lower, least);
-  }
-  for (double* upper : {&variable.upper, &variable.soft_upper}) {
-    if (!has_upper) *upper = std::min(*upper, most);
-  }
+  narrow(has_lower ? -kInfinity : least, has_upper ? kInfinity : most, variable);
   return variable;
 }
 
-void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
+void narrow_by_follower(const urdf::Joint& follower, const Following& motion,
                         const RobotOptions& options, ChainVariable& variable) {
-  if (motion.source == &follower || motion.multiplier == 0.0) return;
-  if (motion.curve) narrow_to_ends(*motion.curve, variable);
+  if (follower.name == variable.name || motion.multiplier == 0.0) return;
+  if (motion.curve) {
+    narrow(motion.curve->lower(), motion.curve->upper(), variable);
+    if (variable.type == JointType::continuous) variable.type = JointType::revolute;
+    check_limits(variable);  // else there is nothing to narrow
+  }
   const ChainVariable own = read_variable(follower, options);
-  const auto narrow = [&](double low, double high, double& lower, double& upper) {
+  const auto narrow_both = [&](double low, double high, double& lower, double& upper) {
     low = (low - motion.offset) / motion.multiplier;
     high = (high - motion.offset) / motion.multiplier;
     if (low > high) std::swap(low, high);
@@ -195,14 +204,14 @@ void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
     }
   };
   const auto [least, most] = std::pair(variable.lower, variable.upper);
-  narrow(own.lower, own.upper, variable.lower, variable.upper);
+  narrow_both(own.lower, own.upper, variable.lower, variable.upper);
   if (least < most && !(variable.lower < variable.upper)) {
     throw UrdfError("joint '" + follower.name + "': its limits, lower " + number_text(own.lower) +
                     ", upper " + number_text(own.upper) + ", leave it nowhere to go with '" +
                     variable.name + "', which it follows and which goes from " +
                     number_text(least) + " to " + number_text(most));
   }
-  narrow(own.soft_lower, own.soft_upper, variable.soft_lower, variable.soft_upper);
+  narrow_both(own.soft_lower, own.soft_upper, variable.soft_lower, variable.soft_upper);
   const double slope = std::abs(motion.multiplier) * (motion.curve ? motion.curve->steepest() : 1);
   variable.velocity = std::min(variable.velocity, own.velocity / slope);
   if (variable.type == JointType::continuous && std::isfinite(variable.lower)) {

@@ -20,35 +20,32 @@
 
 namespace iksel {
 
-/// Pose of the joint in its parent link. Throws UrdfError if it is not finite.
-Eigen::Isometry3d origin_of(const urdf::Joint& joint);
+/// Throws UnknownNameError, which begins with `problem`, if there is none of that name.
+const urdf::Joint& find_joint(const urdf::ModelInterface& model, const std::string& name,
+                              const std::string& problem);
 
-/// Unit vector about or along which the joint moves. Throws UrdfError if it has no direction.
-Eigen::Vector3d axis_of(const urdf::Joint& joint);
-
-/// What a joint follows, and how.
-struct CheckedCurve {
-  const urdf::Joint* source;
-  std::shared_ptr<const MotionCurve> curve;
-};
-using CheckedCurves = std::map<std::string, CheckedCurve>;
-
-/// By the name of the joint that follows. Throws InvalidArgumentError or UnknownNameError that
-/// names the curve.
-CheckedCurves check_mimic_curves(const urdf::ModelInterface& model,
-                                 const std::vector<MimicCurve>& curves);
+/// Whether it turns or slides, and so has a value.
+bool has_value(const urdf::Joint& joint);
 
 /// What moves a joint: `source`'s value q, as motion_of says (base/motion_curve.hpp).
 struct Motion : Following {
   const urdf::Joint* source = nullptr;
 };
-using ResolvedMimics = std::map<const urdf::Joint*, Motion>;
+/// By the joint that moves so.
+using Motions = std::map<const urdf::Joint*, Motion>;
 
-/// Through any number of mimic tags, and a curve in the place of the last; `known` are those of
-/// calls before, to which it adds. Throws UnknownNameError if one names no joint, and UrdfError if
-/// they go in a circle, end at a joint that has no value, or a number is too large.
-Motion resolve_mimic(const urdf::ModelInterface& model, const CheckedCurves& curves,
-                     const urdf::Joint& joint, ResolvedMimics& known);
+/// Throws InvalidArgumentError or UnknownNameError that names the curve.
+Motions check_mimic_curves(const urdf::ModelInterface& model,
+                           const std::vector<MimicCurve>& curves);
+
+/// Through any number of mimic tags, and a curve in the place of the last; `known` are the curves
+/// and those of calls before, to which it adds. Throws UnknownNameError if one names no joint, and
+/// UrdfError if they go in a circle, end at a joint that has no value, or a number is too large.
+Motion resolve_mimic(const urdf::ModelInterface& model, const urdf::Joint& joint, Motions& known);
+
+/// All but the parent. Throws as resolve_mimic, and UrdfError if the origin is not finite or the
+/// axis has no direction.
+LinkJoint read_joint(const urdf::ModelInterface& model, const urdf::Joint& joint, Motions& known);
 
 /// The degree of freedom that a joint is. One that turns and has infinite limits is continuous.
 /// Throws UrdfError if it has no limits and the options no default ones.
@@ -56,7 +53,7 @@ ChainVariable make_variable(const urdf::Joint& joint, const RobotOptions& option
 
 /// Narrows the limits of `variable` to those of a joint that follows it, and to the ends of the
 /// curve by which it does. Throws UrdfError where a curve leaves nothing, or several pieces.
-void narrow_by_follower(const urdf::Joint& follower, const Motion& motion,
+void narrow_by_follower(const urdf::Joint& follower, const Following& motion,
                         const RobotOptions& options, ChainVariable& variable);
 
 /// Narrows `lower` and `upper`, values of the joint that is followed, to where the curve stays

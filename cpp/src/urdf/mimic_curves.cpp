@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/constants.hpp"
 #include "base/message_text.hpp"
 #include "iksel/error.hpp"
 #include "urdf/joint.hpp"
@@ -17,6 +16,8 @@ constexpr std::size_t kMostPoints = 100'000;
 std::string text_of(const MimicCurve& curve) {
   return "(joint '" + curve.joint + "' follows '" + curve.follows + "')";
 }
+
+double slack_of(double value) { return 1e-9 * std::max(1.0, std::abs(value)); }
 
 /// Written so that NaN is refused.
 void check_points(const std::vector<double>& numbers, const char* name, const std::string& culprit,
@@ -43,48 +44,41 @@ void check_numbers_of(const MimicCurve& curve, const std::string& culprit) {
   if (!curve.slopes.empty()) check_points(curve.slopes, "slopes", culprit, curve.q.size());
   for (std::size_t i = 1; i < curve.q.size(); ++i) {
     // Closer ones, and their slope is rounding.
-    if (curve.q[i] - curve.q[i - 1] >= 1e-9 * std::max(1.0, std::abs(curve.q[i]))) continue;
+    if (curve.q[i] - curve.q[i - 1] >= slack_of(curve.q[i])) continue;
     throw InvalidArgumentError(culprit + ": q[" + std::to_string(i) + "] is " +
                                number_text(curve.q[i]) + " after " + number_text(curve.q[i - 1]) +
                                ": each has to be above the one before");
   }
 }
 
-const urdf::Joint& find_joint(const urdf::ModelInterface& model, const std::string& name,
-                              const std::string& culprit) {
-  const auto it = model.joints_.find(name);
-  if (it != model.joints_.end()) return *it->second;
-  throw_unknown_name(culprit + ": '" + name + "' is not in the URDF", name, joint_names_of(model));
-}
-
-double slack_of(double value) { return 1e-9 * std::max(1.0, std::abs(value)); }
-
 }  // namespace
 
-CheckedCurves check_mimic_curves(const urdf::ModelInterface& model,
-                                 const std::vector<MimicCurve>& curves) {
-  CheckedCurves checked;
+Motions check_mimic_curves(const urdf::ModelInterface& model,
+                           const std::vector<MimicCurve>& curves) {
+  Motions checked;
   const auto culprit = [&](std::size_t i) {
     return "mimic_curves[" + std::to_string(i) + "] " + text_of(curves[i]);
   };
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const MimicCurve& curve = curves[i];
-    const urdf::Joint& joint = find_joint(model, curve.joint, culprit(i));
-    const urdf::Joint& source = find_joint(model, curve.follows, culprit(i));
-    if (joint.type != urdf::Joint::REVOLUTE && joint.type != urdf::Joint::CONTINUOUS &&
-        joint.type != urdf::Joint::PRISMATIC) {
+    const auto find = [&](const std::string& name) {
+      return &find_joint(model, name, culprit(i) + ": '" + name + "' is not in the URDF");
+    };
+    const urdf::Joint& joint = *find(curve.joint);
+    const urdf::Joint& source = *find(curve.follows);
+    if (!has_value(joint)) {
       throw InvalidArgumentError(culprit(i) + ": joint '" + curve.joint + "' is " +
                                  joint_type_name(joint.type));
     }
     check_numbers_of(curve, culprit(i));
     auto motion = std::make_shared<const MotionCurve>(curve.q, curve.values, curve.slopes);
-    if (!checked.emplace(curve.joint, CheckedCurve{&source, std::move(motion)}).second) {
+    if (!checked.try_emplace(&joint, Motion{{1.0, 0.0, std::move(motion)}, &source}).second) {
       throw InvalidArgumentError(culprit(i) + ": the joint has another curve before it");
     }
   }
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const CheckedCurve& curve = checked.at(curves[i].joint);
-    if (!curve.source->mimic && checked.count(curve.source->name) == 0) continue;
+    const urdf::Joint& source = *model.joints_.at(curves[i].follows);
+    if (!source.mimic && checked.count(&source) == 0) continue;
     throw InvalidArgumentError(
         culprit(i) + ": '" + curves[i].follows +
         "' follows a joint itself: name the one that is followed in the end");
@@ -121,9 +115,8 @@ bool narrow_to_values(const MotionCurve& curve, double least, double most, doubl
   bool was_inside = false;
   for (std::size_t i = 0; i < at.size(); ++i) {
     const bool inside = is_inside(at[i]);
-    if (inside && !was_inside) {
-      ++pieces;
-      if (pieces == 1) first = i == 0 ? at[i] : border(at[i], at[i - 1]);
+    if (inside && !was_inside && ++pieces == 1) {
+      first = i == 0 ? at[i] : border(at[i], at[i - 1]);
     }
     if (inside) last = at[i];
     if (!inside && was_inside && pieces == 1) last = border(at[i - 1], at[i]);
@@ -137,7 +130,6 @@ bool narrow_to_values(const MotionCurve& curve, double least, double most, doubl
 
 MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& follows, double lower,
                                double upper, const Function& function) {
-  constexpr std::size_t kMostGaps = 8192;
   MimicCurve curve;
   curve.joint = joint;
   curve.follows = follows;
@@ -155,7 +147,7 @@ MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& foll
   };
   double off = 0;
   double off_slope = 0;
-  for (std::size_t gaps = 16; gaps <= kMostGaps; gaps *= 2) {
+  for (std::size_t gaps = 16; gaps <= 8192; gaps *= 2) {
     const double step = (upper - lower) / static_cast<double>(gaps);
     curve.q.clear();
     curve.values.clear();
@@ -179,7 +171,7 @@ MimicCurve MimicCurve::sampled(const std::string& joint, const std::string& foll
     }
     if (off <= 1e-10 && off_slope <= 1e-6) return curve;  // [rad or m], and a slope
   }
-  throw InvalidArgumentError(culprit + ": with " + std::to_string(kMostGaps) +
+  throw InvalidArgumentError(culprit + ": with " + std::to_string(curve.q.size() - 1) +
                              " gaps the curve is still " + number_text(off) +
                              " off the function, and " + number_text(off_slope) +
                              " off its slope: the function is not smooth, or its slope is not its "

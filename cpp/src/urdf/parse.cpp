@@ -4,17 +4,13 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <exception>
 #include <fstream>
-#include <map>
 #include <mutex>
-#include <string>
 #include <system_error>
 #include <utility>
 
-#include "iksel/error.hpp"
 #include "urdf/urdf_text.hpp"
 
 namespace iksel {
@@ -62,14 +58,6 @@ class MessageCollector : public console_bridge::OutputHandler {
   console_bridge::OutputHandler* previous_ = nullptr;
   std::string text_;
 };
-
-/// One line out of many, so that an error stays one line.
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r' || c == '\t') c = ' ';
-  }
-  return text;
-}
 
 /// What urdfdom says, which is only what it met, and what to do about it.
 constexpr std::pair<const char*, const char*> kRemedies[] = {
@@ -161,12 +149,10 @@ std::vector<std::string> joint_names_of(const urdf::ModelInterface& model) {
 }
 
 const char* joint_type_name(int type) {
-  static const std::map<int, const char*> kNames = {
-      {urdf::Joint::REVOLUTE, "revolute"},   {urdf::Joint::CONTINUOUS, "continuous"},
-      {urdf::Joint::PRISMATIC, "prismatic"}, {urdf::Joint::FIXED, "fixed"},
-      {urdf::Joint::FLOATING, "floating"},   {urdf::Joint::PLANAR, "planar"}};
-  const auto found = kNames.find(type);
-  return found == kNames.end() ? "of an unknown type" : found->second;
+  constexpr const char* kNames[] = {"of an unknown type", "revolute", "continuous", "prismatic",
+                                    "floating",           "planar",   "fixed"};
+  static_assert(urdf::Joint::REVOLUTE == 1 && urdf::Joint::FIXED == 6, "the order of urdfdom");
+  return kNames[type];
 }
 
 void throw_if_xacro(const std::string& xml, const std::string& reason) {

@@ -3,12 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <locale>
 #include <sstream>
-#include <vector>
 
-#include "base/message_text.hpp"
 #include "base/rotation.hpp"
 #include "iksel/error.hpp"
 #include "iksel/urdf_text.hpp"
@@ -48,10 +45,8 @@ std::string plain_numbers(const std::string& text) {
 
 /// A limit as urdfdom reads it. Infinity, which it does not know, is the largest number.
 std::string plain_limit(const std::string& text) {
-  std::string number = plain_numbers(text);
-  std::string size = number.substr(number.find_first_not_of("+-") == 1 ? 1 : 0);
-  std::transform(size.begin(), size.end(), size.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const std::string number = plain_numbers(text);
+  const std::string size = lower_case(number.substr(number.find_first_not_of("+-") == 1 ? 1 : 0));
   if (size != "inf" && size != "infinity") return number;
   return number[0] == '-' ? "-1e308" : "1e308";
 }
@@ -59,17 +54,14 @@ std::string plain_limit(const std::string& text) {
 void copy_attributes(const XmlElement& from, const Part& part, XmlElement& to) {
   const auto copy = [&](const std::vector<const char*>& keys, const auto& written) {
     for (const char* key : keys) {
-      const std::string* value = from.attribute(key);
-      if (value != nullptr) to.attributes.emplace_back(key, written(*value));
+      const std::string value = written(from.value(key));
+      // As if those without anything in them were not there.
+      if (!value.empty()) to.attributes.emplace_back(key, value);
     }
   };
   copy(part.names, [](const std::string& name) { return name; });
   copy(part.numbers, plain_numbers);
   copy(part.limits, plain_limit);
-  auto& all = to.attributes;  // as if those without anything in them were not there
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [](const auto& attribute) { return attribute.second.empty(); }),
-            all.end());
 }
 
 void add_missing(XmlElement& element, const char* key, const char* value) {
@@ -80,11 +72,11 @@ XmlElement kinematic_joint(const XmlElement& joint) {
   XmlElement made;
   made.name = "joint";
   copy_attributes(joint, {"joint", {"name", "type"}, {}, {}}, made);
-  const std::string* type = joint.attribute("type");
+  const std::string type = joint.value("type");
   for (const Part& part : joint_parts()) {
     const XmlElement* given = joint.child(part.name);
     const bool is_limit = part.name == std::string("limit");
-    if (!given && !(is_limit && type && (*type == "revolute" || *type == "prismatic"))) continue;
+    if (!given && !(is_limit && (type == "revolute" || type == "prismatic"))) continue;
     XmlElement& element = made.children.emplace_back();
     element.name = part.name;
     if (given != nullptr) copy_attributes(*given, part, element);
@@ -99,8 +91,7 @@ XmlElement kinematic_joint(const XmlElement& joint) {
 
 /// The number of a version "1.2", in tenths; 10 where there is none.
 int version_of(const XmlElement& robot) {
-  const std::string* text = robot.attribute("version");
-  std::istringstream in(text == nullptr ? "" : *text);
+  std::istringstream in(robot.value("version"));
   in.imbue(std::locale::classic());
   int major = 0;
   int minor = 0;
@@ -136,8 +127,7 @@ void check_orientation(const XmlElement& joint, int version) {
   const XmlElement* origin = joint.child("origin");
   const std::string* quaternion = origin == nullptr ? nullptr : origin->attribute("quat_xyzw");
   if (quaternion == nullptr) return;
-  const std::string* name = joint.attribute("name");
-  const std::string culprit = "joint '" + (name == nullptr ? "" : *name) + "': its origin has ";
+  const std::string culprit = "joint '" + joint.value("name") + "': its origin has ";
   if (origin->attribute("rpy") != nullptr) {
     throw UrdfError(culprit + "both rpy and quat_xyzw: take one of them out");
   }
@@ -159,8 +149,7 @@ void replace_quaternions(XmlElement& robot) {
 std::string kinematic_text(const XmlElement& robot) {
   XmlElement made;
   made.name = "robot";
-  const std::string* robot_name = robot.attribute("name");
-  made.attributes.emplace_back("name", robot_name == nullptr ? "" : *robot_name);
+  made.attributes.emplace_back("name", robot.value("name"));
   for (const XmlElement& element : robot.children) {
     if (element.name == "link") {
       XmlElement& link = made.children.emplace_back();

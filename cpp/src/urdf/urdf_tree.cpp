@@ -15,21 +15,19 @@ struct Joint {
   std::string name, parent, child;
 };
 
-std::string value_of(const XmlElement* element, const char* key) {
-  const std::string* value = element == nullptr ? nullptr : element->attribute(key);
-  return value == nullptr ? "" : *value;
-}
-
 Joint joint_of(const XmlElement& element) {
-  return {value_of(&element, "name"), value_of(element.child("parent"), "link"),
-          value_of(element.child("child"), "link")};
+  const auto link_at = [&](const char* end) {
+    const XmlElement* const child = element.child(end);
+    return child == nullptr ? "" : child->value("link");
+  };
+  return {element.value("name"), link_at("parent"), link_at("child")};
 }
 
 /// The joints of a URDF by their child links.
 std::map<std::string, Joint> find_carriers(const XmlElement& robot) {
   std::set<std::string> links;
   for (const XmlElement& element : robot.children) {
-    if (element.name == "link") links.insert(value_of(&element, "name"));
+    if (element.name == "link") links.insert(element.value("name"));
   }
   if (links.count("") > 0) throw UrdfError("URDF does not parse: give each <link> a name");
   std::map<std::string, Joint> carriers;
@@ -85,7 +83,7 @@ void keep_one_tree(XmlElement& robot, const std::vector<std::string>& links) {
   const std::string* kept = nullptr;
   for (const XmlElement& element : robot.children) {
     if (element.name != "link") continue;
-    const std::string name = value_of(&element, "name");
+    const std::string name = element.value("name");
     const std::string root = root_of(name);
     if (known.insert(root).second) all.push_back(root);
     const auto meant = std::find(links.begin(), links.end(), name);
@@ -107,7 +105,7 @@ void keep_one_tree(XmlElement& robot, const std::vector<std::string>& links) {
   const auto is_strange = [&](const XmlElement& element) {
     if (element.name != "link" && element.name != "joint") return false;
     const bool is_link = element.name == "link";
-    const std::string link = is_link ? value_of(&element, "name") : joint_of(element).parent;
+    const std::string link = is_link ? element.value("name") : joint_of(element).parent;
     return root_of(link) != root_of(*kept);
   };
   auto& parts = robot.children;

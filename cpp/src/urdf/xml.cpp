@@ -12,15 +12,6 @@
 namespace iksel {
 namespace {
 
-// A robot needs half a dozen levels and some thousand elements; text made to be more would end the
-// stack or the memory.
-constexpr int kMaxDepth = 200;
-constexpr std::size_t kMaxElements = 1'000'000;
-constexpr std::size_t kMaxAttributes = 1000;  // of an element
-
-constexpr std::string_view kSpaces = " \t\r\n";
-constexpr std::size_t kNowhere = std::string_view::npos;
-
 bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
          static_cast<unsigned char>(c) >= 0x80;
@@ -39,7 +30,7 @@ std::optional<char32_t> entity(std::string_view inside) {
   const bool is_hex = inside.substr(1, 1) == "x";
   const std::string digits(inside.substr(is_hex ? 2 : 1));
   const char* known = is_hex ? "0123456789abcdefABCDEF" : "0123456789";
-  if (digits.empty() || digits.find_first_not_of(known) != kNowhere) return std::nullopt;
+  if (digits.empty() || digits.find_first_not_of(known) != std::string::npos) return std::nullopt;
   const auto c = static_cast<char32_t>(std::stoul(digits, nullptr, is_hex ? 16 : 10));
   return is_xml_character(c) ? std::optional(c) : std::nullopt;
 }
@@ -48,8 +39,10 @@ std::string resolve_entities(std::string_view raw) {
   std::string text;
   for (std::size_t at = 0; at < raw.size();) {
     // The longest is as &#x10FFFF;
-    const std::size_t end = raw[at] == '&' ? raw.substr(0, at + 10).find(';', at) : kNowhere;
-    const auto c = end == kNowhere ? std::nullopt : entity(raw.substr(at + 1, end - at - 1));
+    const std::size_t end =
+        raw[at] == '&' ? raw.substr(0, at + 10).find(';', at) : std::string::npos;
+    const auto c =
+        end == std::string::npos ? std::nullopt : entity(raw.substr(at + 1, end - at - 1));
     if (c) {
       append_utf8(text, *c);
       at = end + 1;
@@ -60,6 +53,8 @@ std::string resolve_entities(std::string_view raw) {
   return text;
 }
 
+/// A robot needs half a dozen levels and some thousand elements; text made to be more, which would
+/// end the stack or the memory, is refused.
 class XmlReader {
  public:
   XmlReader(const std::string& bytes, std::string* root_name)
@@ -100,12 +95,12 @@ class XmlReader {
     return true;
   }
 
-  void skip_spaces() { at_ = std::min(text_.find_first_not_of(kSpaces, at_), text_.size()); }
+  void skip_spaces() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
 
   /// Behind the next `end`.
   void skip_behind(std::string_view end, const char* what) {
     const std::size_t found = text_.find(end, at_);
-    if (found == kNowhere) fail(at_, std::string(what) + " that nothing closes");
+    if (found == std::string::npos) fail(at_, std::string(what) + " that nothing closes");
     at_ = found + end.size();
   }
 
@@ -167,8 +162,9 @@ class XmlReader {
     while (at_ < text_.size() && is_in_name(text_[at_])) ++at_;
     std::string name = text_.substr(begin, at_ - begin);
     const std::size_t colon = name.find(':');
-    const bool has_prefix = colon != kNowhere && colon != 0 && colon + 1 < name.size() &&
-                            begins_name(name[colon + 1]) && name.find(':', colon + 1) == kNowhere;
+    const bool has_prefix = colon != std::string::npos && colon != 0 && colon + 1 < name.size() &&
+                            begins_name(name[colon + 1]) &&
+                            name.find(':', colon + 1) == std::string::npos;
     for (std::size_t i = 0; i < name.size(); ++i) {
       const bool is_odd = static_cast<unsigned char>(name[i]) >= 0x80;
       if (is_odd || (name[i] == ':' && !(has_prefix && i == colon))) name[i] = '_';
@@ -181,7 +177,8 @@ class XmlReader {
     const std::size_t begin = at_;
     const std::string name = read_name();
     const auto refuse = [&](const std::string& what) {
-      const bool is_cut = text_.find('<', begin) == kNowhere && text_.find('>', begin) == kNowhere;
+      const bool is_cut = text_.find('<', begin) == std::string::npos &&
+                          text_.find('>', begin) == std::string::npos;
       fail(begin, is_cut ? "the text ends, as if it was cut off, in attribute '" + name + "'"
                          : "the value of attribute '" + name + "' " + what);
     };
@@ -191,19 +188,16 @@ class XmlReader {
     if (!is_at('"') && !is_at('\'')) refuse("has no quotes: write " + name + "=\"...\"");
     const char quote = text_[at_++];
     const std::size_t end = text_.find_first_of(std::string{quote, '<'}, at_);
-    if (end == kNowhere || text_[end] != quote) {
+    if (end == std::string::npos || text_[end] != quote) {
       refuse("has no closing quote (a < in it is written &lt;)");
     }
-    std::string value = resolve_entities(std::string_view(text_).substr(at_, end - at_));
-    std::replace_if(
-        value.begin(), value.end(), [](char c) { return kSpaces.find(c) != kNowhere; }, ' ');
+    const std::string value =
+        one_line(resolve_entities(std::string_view(text_).substr(at_, end - at_)));
     at_ = end + 1;
     if (name == "xmlns") return;
     if (name.compare(0, 6, "xmlns:") == 0) return note_prefix(name.substr(6), value);
     if (element.attribute(name) != nullptr) fail(begin, "a second attribute '" + name + "'");
-    if (element.attributes.size() == kMaxAttributes) {
-      fail(begin, "more than " + std::to_string(kMaxAttributes) + " attributes");
-    }
+    if (element.attributes.size() == 1000) fail(begin, "more than 1000 attributes");
     element.attributes.emplace_back(name, value);
   }
 
@@ -215,7 +209,7 @@ class XmlReader {
     element.name = read_name();
     if (elements_ == 0 && root_name_ != nullptr) *root_name_ = element.name;
     if (element.name.compare(0, 6, "xmlns:") == 0) element.name[5] = '_';
-    if (++elements_ > kMaxElements) fail(begin, "more than a million elements");
+    if (++elements_ > 1'000'000) fail(begin, "more than a million elements");
     while (true) {
       skip_spaces();
       if (take("/>")) return element;
@@ -223,9 +217,7 @@ class XmlReader {
       if (at_ >= text_.size()) fail_at_end(element.name, begin);
       read_attribute(element);
     }
-    if (++depth_ > kMaxDepth) {
-      fail(begin, "elements are nested deeper than " + std::to_string(kMaxDepth) + " levels");
-    }
+    if (++depth_ > 200) fail(begin, "elements are nested deeper than 200 levels");
     for (element.text = read_text(); !is_at("</"); element.children.back().tail = read_text()) {
       if (at_ >= text_.size()) fail_at_end(element.name, begin);
       element.children.push_back(read_element());
@@ -264,7 +256,7 @@ class XmlReader {
                                    "http://www.w3.org/2000/xmlns/"};
     for (const auto& [prefix, space] : prefixes_) {
       // With a colon it is no other prefix.
-      const bool is_kept = space.find(':') != kNowhere &&
+      const bool is_kept = space.find(':') != std::string::npos &&
                            std::all_of(space.begin(), space.end(), is_plain) &&
                            taken.insert(space).second;
       root.attributes.emplace_back("xmlns:" + prefix, is_kept ? space : prefix);

@@ -19,6 +19,8 @@ struct XmlElement {
 
   /// Value of an attribute; null where there is none.
   [[nodiscard]] const std::string* attribute(std::string_view key) const;
+  /// The same; empty where there is none.
+  [[nodiscard]] std::string value(std::string_view key) const;
   /// The first child of a name; null where there is none.
   [[nodiscard]] const XmlElement* child(std::string_view child_name) const;
 };
@@ -30,6 +32,9 @@ struct XmlElement {
 /// or anything else leaves open what is meant, and for text that would take all memory.
 /// The name of the first element is written to `root_name`, also where it throws later.
 XmlElement parse_xml(const std::string& bytes, std::string* root_name = nullptr);
+
+/// Spaces in the place of tabs and line breaks.
+std::string one_line(std::string text);
 
 /// Text as it stands in an element or an attribute.
 std::string escape_xml(const std::string& text);

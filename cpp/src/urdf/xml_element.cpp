@@ -33,25 +33,31 @@ const std::string* XmlElement::attribute(std::string_view key) const {
   return found == attributes.end() ? nullptr : &found->second;
 }
 
+std::string XmlElement::value(std::string_view key) const {
+  const std::string* found = attribute(key);
+  return found == nullptr ? "" : *found;
+}
+
 const XmlElement* XmlElement::child(std::string_view child_name) const {
   const auto found = std::find_if(children.begin(), children.end(),
                                   [&](const XmlElement& e) { return e.name == child_name; });
   return found == children.end() ? nullptr : &*found;
 }
 
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  return text;
+}
+
 std::string escape_xml(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    const char* entity = c == '&'   ? "&amp;"
-                         : c == '<' ? "&lt;"
-                         : c == '>' ? "&gt;"
-                         : c == '"' ? "&quot;"
-                                    : nullptr;
-    if (entity == nullptr) {
-      out += c;
-    } else {
-      out += entity;
-    }
+    out += c == '&'   ? "&amp;"
+           : c == '<' ? "&lt;"
+           : c == '>' ? "&gt;"
+           : c == '"' ? "&quot;"
+                      : std::string(1, c);
   }
   return out;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene/ball_table.hpp"
+#include "scene/link_table.hpp"
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace iksel {
 namespace {
@@ -66,7 +67,7 @@ void part(Spheres& spheres, int first, int last, int parts, std::vector<int>& en
 
 }  // namespace
 
-void BallTable::fill(int node, Spheres& spheres, int first, int last) {
+void LinkTable::fill(int node, Spheres& spheres, int first, int last) {
   std::vector<int> ends;
   const bool is_leaf = last - first <= lanes::kWidth;
   if (is_leaf) {
@@ -92,7 +93,7 @@ void BallTable::fill(int node, Spheres& spheres, int first, int last) {
   }
 }
 
-int BallTable::add(int body, Spheres spheres) {
+int LinkTable::add(int body, Spheres spheres) {
   const std::size_t root = nodes_.size();
   nodes_.emplace_back();
   const lanes::SceneBall around = to_ball(ball_around(spheres));
@@ -109,13 +110,41 @@ int BallTable::add(int body, Spheres spheres) {
   return static_cast<int>(link);
 }
 
-void BallTable::show(lanes::SceneView& view) const {
+void LinkTable::add_pair(const lanes::ScenePair& pair) {
+  const auto block_of = [&](int one, int other) {
+    return std::find_if(blocks_.begin(), blocks_.end(), [&](const lanes::ScenePairBlock& block) {
+      return block.one == one && block.first == other / lanes::kWidth * lanes::kWidth;
+    });
+  };
+  // Either link can be the one that others are held against: few blocks are few to look at.
+  int one = pair.a;
+  int other = pair.b;
+  auto block = block_of(one, other);
+  if (block == blocks_.end() && block_of(other, one) != blocks_.end()) {
+    std::swap(one, other);
+    block = block_of(one, other);
+  }
+  if (block == blocks_.end()) {
+    blocks_.push_back({one, other / lanes::kWidth * lanes::kWidth, 0, {}});
+    block = blocks_.end() - 1;
+  }
+  const int lane = other - block->first;
+  block->mask |= 1U << static_cast<unsigned>(lane);
+  block->pair[lane] = static_cast<int>(pairs_.size());
+  pairs_.push_back(pair);
+}
+
+void LinkTable::show(lanes::SceneView& view) const {
   view.links = static_cast<int>(links_.size());
   view.link = links_.data();
   view.link_runs = static_cast<int>(runs_.size());
   view.link_run = runs_.data();
   for (std::size_t i = 0; i < around_.size(); ++i) view.around[i] = around_[i].data();
   view.node = nodes_.data();
+  view.pairs = static_cast<int>(pairs_.size());
+  view.pair = pairs_.data();
+  view.pair_blocks = static_cast<int>(blocks_.size());
+  view.pair_block = blocks_.data();
 }
 
 }  // namespace iksel

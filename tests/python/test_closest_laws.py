@@ -12,7 +12,8 @@ import iksel
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench.random_arms import BUILDS, sketch
+from bench.closest import missing as missing_by_weights
+from bench.random_arms import BUILDS, random_arm, sketch
 
 DESCENTS = 100
 
@@ -171,3 +172,33 @@ def test_it_comes_as_near_as_many_descents(name: str) -> None:
             worse, tried = worse + counts[0], tried + counts[1]
     assert tried > 20
     assert worse <= 1 + 0.015 * tried, f"{worse} of {tried}"
+
+
+SHARES = [(1, 0.3, 0.1), (3, 1, 0.3), (0.05, 1, 1), (0, 1, 1)]
+"""Of the default weight, by which rotations about the target's axes count."""
+
+
+def test_it_comes_as_near_where_rotations_weigh_unlike() -> None:
+    worse = tried = 0
+    for seed in range(max(1, CASES // 200)):
+        for build in BUILDS:
+            arm = random_arm(build, seed)
+            solver = iksel.Solver(arm.robot)
+            options = iksel.SolverOptions(max_attempts=DESCENTS)
+            patient = iksel.Solver(arm.robot, options, solver.database)
+            seeds = arm.robot.random_configurations(DESCENTS, seed=seed + 1)
+            for i, pose in enumerate(strange_poses(arm.robot, 10, seed)):
+                turned = np.array(SHARES[i % len(SHARES)]) * arm.robot.reach / 4
+                weights = np.concatenate([np.ones(3), turned])
+                one = solver.solve(pose, closest=weights)
+                if one.status != iksel.Status.closest:
+                    continue
+                many = patient.solve(
+                    pose, closest=weights, seeds=seeds, database_seeds=False
+                )
+                q = np.array([one.q, many.q])
+                left = missing_by_weights(arm, np.array([pose, pose]), q, weights)
+                worse += left[0] > 1.01 * left[1] + 1e-6
+                tried += 1
+    assert tried > 20
+    assert worse <= 0.01 * tried, f"{worse} of {tried}"

@@ -244,6 +244,23 @@ def test_no_solution_of_seven_joints_is_better(made, name: str, objective: str) 
         assert solver.solve(pose, objective=objective).cost <= best + 1e-3 * abs(best)
 
 
+@pytest.mark.parametrize("name", ["irb14050", "synthetic10", "ur5e"])
+@pytest.mark.parametrize("objective", ["limits", "manipulability"])
+def test_no_solution_found_at_random_is_better(made, name: str, objective: str) -> None:
+    """Where no joint is swept, solve leaves out nothing that solve_all sees."""
+    solver = made.solver(name)
+    tasks = [iksel.Task.free_spin(), iksel.Task.position_only()]
+    if solver.robot.dof > 6:
+        tasks.append(iksel.Task.pose())
+    seed = 1
+    for pose in solver.robot.fk(solver.robot.random_configurations(20, seed)):
+        for task in tasks:
+            wish = {"objective": objective, "task": task}
+            best = solver.solve_all(pose, **wish)[0].cost
+            cost = solver.solve(pose, **wish).cost
+            assert cost <= best + 1e-6 * abs(best), f"{task}, seed {seed}"
+
+
 def test_exceptions_of_an_objective_reach_the_caller(made) -> None:
     solver = made.solver("panda")
     target = solver.robot.fk(solver.robot.random_configurations(1, 1)[0])

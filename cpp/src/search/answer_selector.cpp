@@ -44,6 +44,10 @@ bool AnswerSelector::is_satisfied(const Collector& search) {
   // Of several tips there are as many seeds as the nearest needs.
   if (goal_.tips() != nullptr && search.wants_nearest()) return false;
   if (goal_.is_redundant()) {
+    // As many as solve_all sees of its 64, so that none of its answers is better.
+    if (!nearest_to_ && goal_.tips() == nullptr && search.spread() == 0) {
+      return found_.size() >= std::size_t{kSeedsOfSurfaces} || search.is_likely_complete();
+    }
     const int seeds = search.are_surfaces()  ? kSeedsOfSurfaces
                       : is_nearest_of_task() ? kSeedsOfTask
                                              : kRedundantSeeds;
@@ -112,7 +116,12 @@ void AnswerSelector::screen_new() {
 }
 
 void AnswerSelector::descend_from(JointVector end, double& best, JointVector& q) {
-  descend(end);
+  if (nearest_to_) {
+    steps_ += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, end);
+  } else {
+    const ObjectiveCost objective(goal_.robot(), request_.objective);
+    steps_ += descend_self_motion(goal_, JointCost(objective), /*most=*/50, end);
+  }
   const double cost = cost_of(end);
   if (!(cost < best) || !goal_.is_solution(end)) return;
   bool keep = true;
@@ -120,15 +129,6 @@ void AnswerSelector::descend_from(JointVector end, double& best, JointVector& q)
   if (!keep) return;
   best = cost;
   q = end;
-}
-
-void AnswerSelector::descend(JointVector& q) {
-  if (nearest_to_) {
-    steps_ += descend_to_near(goal_, nearest_to_->move, nearest_to_->from, q);
-  } else {
-    const ObjectiveCost cost(goal_.robot(), request_.objective);
-    steps_ += descend_self_motion(goal_, JointCost(cost), /*most=*/50, q);
-  }
 }
 
 bool AnswerSelector::select_image(double best, JointVector& q) {

@@ -61,7 +61,6 @@ class AnswerSelector {
   /// Goes from a solution along its self-motion to the least cost; q is the best before, and after,
   /// and `best` its cost.
   void descend_from(JointVector end, double& best, JointVector& q);
-  void descend(JointVector& q);
   /// As select, among the images whose cost is less than `best`. False if there is none, and q is
   /// what it was.
   bool select_image(double best, JointVector& q);

@@ -17,12 +17,6 @@ struct ScreenRound {
 };
 constexpr ScreenRound kScreenRounds[] = {{5, 3}, {12, 1}, {12, 1}, {4, 1}};
 
-/// The weights of the axes whose trace has the squares of rotations about them to second order:
-/// 1 - E_xx is half the sum of the other two's.
-Eigen::Vector3d trace_weights(const Eigen::Vector3d& squares) {
-  return Eigen::Vector3d::Constant(squares.sum()) - 2 * squares;
-}
-
 }  // namespace
 
 ClosestScreen::ClosestScreen(const ChainModel& model, std::uint64_t seed,
@@ -70,7 +64,11 @@ void ClosestScreen::add_target(const Pose& allowed, const Goal& goal, const Vect
   const double unit2 = rotation2 > 0 ? rotation2 : squares.head<3>().maxCoeff();
   const Eigen::Matrix3d metric = axes * squares.head<3>().asDiagonal() * axes.transpose();
   Eigen::Matrix3d traced = Eigen::Matrix3d::Identity();
-  if (rotation2 > 0) traced = trace_weights(squares.tail<3>() / rotation2).asDiagonal();
+  if (rotation2 > 0) {
+    // 1 - E_xx is half the sum of the squares of rotations about the other two, to second order.
+    const Eigen::Vector3d turns = squares.tail<3>() / rotation2;
+    traced = (Eigen::Vector3d::Constant(turns.sum()) - 2 * turns).asDiagonal();
+  }
   const Eigen::Matrix3d back = allowed.linear().transpose();
   const Eigen::Matrix3d B =
       last_to_tcp_.linear() * (in_tool ? traced * back : back * traced) * from_base.transpose();
@@ -154,8 +152,10 @@ void ClosestScreen::find(const Goal& goal, const Vector6& weights, LaneQuery& qu
   const Vector6 counts = goal.task().without_free(weights).cwiseAbs2();
   const int twist = goal.task().twist_axis();
   const bool counts_twist = twist >= 0 && counts[3 + twist] > 0;
+  // A trace has the squares of rotations that weigh unlike to second order only.
+  const auto turns = counts.tail<3>();
   is_measured_ =
-      !counts_twist &&
+      !counts_twist && turns.sum() == (twist < 0 ? 3 : 2) * turns.maxCoeff() &&
       (counts.array() == 0 || goal.task().lower().array() == goal.task().upper().array()).all();
   use_length(counts);
   query.set_target(query.reduce(goal.nearest_pose()));

@@ -223,7 +223,8 @@ TEST(Build, ReportsProgressUpToTheEnd) {
     last = done;
     all = total;
   });
-  EXPECT_GT(calls, 3);
+  // At the start and at the end, and between them now and then.
+  EXPECT_GE(calls, 2);
   EXPECT_EQ(last, all);
   EXPECT_EQ(all, 3000U);
 }

@@ -574,6 +574,12 @@ def test_no_answer_lies_off_the_arcs(build: str) -> None:
         # Beside a fold the wrist is all but straight, and passes that.
         *(("shoulder_elbow_offset", 881091, 59), ("shoulder_offset", 883025, 102)),
         *(("shoulder_elbow_offset", 883023, 142), ("wrist_offset", 884043, 71)),
+        # So is the elbow there, and axes 3 and 5 in one line; or the branch ends twice
+        # between two samples, and the wrist is all but straight.
+        *(("shoulder_offset", 885019, 95), ("wrist_offset", 886061, 108)),
+        ("elbow_offset", 886001, 71),
+        # A joint turns back beyond a limit between two samples.
+        ("shoulder_offset", 884010, 2),
         # The elbow is all but straight: from sample to sample joints turn farther than
         # the move is long.
         *(("wrist_offset", 620053, 40, 0.15), ("srs", 640054, 83, 0.15)),

@@ -4,94 +4,93 @@
 namespace iksel {
 namespace {
 
+/// Between two points joints turn far that turn by more: what is shortest may be far from both
+/// [rad].
+constexpr double kWide = 0.7;
 /// Of what turns so far it is not known which way round [rad].
 constexpr double kEitherWay = 2.5;
 
 }  // namespace
 
-template <typename Beyond>
-MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b,
-                                      const Beyond& beyond, double best) const {
-  // Sums of joints are not looked at one by one.
-  bool meets_limit = form_.sums != nullptr && (a.off > 0) != (b.off > 0);
-  Norm norm(form_);
-  for (std::size_t i = 0; i < a.q.size(); ++i) {
-    const double turn = this->turn(i, a.q[i], b.q[i]);
-    if (std::isnan(turn)) continue;
-    const bool is_either_way = form_.turns[i] && std::abs(turn) > kEitherWay;
-    const double around = is_either_way ? kPi : beyond(i, std::abs(turn));
-    const Reach one = reach(i, a.q[i] + std::min(turn, 0.0) - around,
-                            a.q[i] + std::max(turn, 0.0) + around, form_.margin);
-    norm.add(i, one.move);
-    if (!norm.is_below(best)) return {kInfinity, false};
-    meets_limit = meets_limit || one.meets_limit;
-  }
-  return {norm.value(), meets_limit};
-}
-
-MoveBounds::Reach MoveBounds::between(const BranchPoint& a, const BranchPoint& b, const Way& way,
-                                      double best) const {
-  // Joints may turn so much beyond both points, as a part of what they turn between them, and of
-  // what the one does that turns most.
-  constexpr double kBeyond = 0.25;
-  constexpr double kBend = 0.05;
-  const double bend = kBend * way.largest;
-  return between(
-      a, b, [=](std::size_t, double turn) { return kBeyond * turn + bend; }, best);
-}
-
-bool MoveBounds::may_hide_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
-                                  double usual, double best) const {
-  constexpr double kFinest = 1e-5;  // [rad]
-  const bool is_wide = way.largest > std::max(kWide, usual);
-  const bool changes_images = way.leaves_limits || a.is_blocked() || b.is_blocked();
-  if (way.largest < kFinest || !(is_wide || changes_images)) return false;
-  // Where joints turn far, what is shortest may be far from both points.
-  if (!is_wide && !may_be_shorter(a, b, way, best - kTooLittle)) return false;
-  const Reach between = this->between(a, b, way, best - kTooLittle);
-  return (is_wide || between.meets_limit) && between.move < kInfinity;
-}
-
-bool MoveBounds::may_be_shorter(const Gap& gap, double best) const {
+bool MoveBounds::may_hide_shorter(const Gap& gap, double best) const {
   const BranchPoint& a = gap.a;
   const BranchPoint& b = gap.b;
-  const auto most = [&](const auto& change) {
-    double largest = change(a, b);
-    if (gap.before != nullptr) largest = std::max(largest, change(*gap.before, a));
-    if (gap.behind != nullptr) largest = std::max(largest, change(b, *gap.behind));
-    return largest;
+  const auto known = [](const BranchPoint* point) {
+    return point != nullptr ? point->least : lanes::kUnknown;
   };
-  const double rise = most([](const BranchPoint& from, const BranchPoint& to) {
-    return std::abs(to.least - from.least);
-  });
-  if (!may_be_between(a.least, b.least, rise)) return false;
+  const double bend =
+      beyond(b.least - a.least, a.least - known(gap.before), known(gap.behind) - b.least);
+  if (std::max(a.least, b.least) + bend < 0) return false;
   // What joints a loop opens to, its ends do not tell, nor the only point that is on it.
   const auto may_be = [](const BranchPoint* point) { return point == nullptr || point->exists(); };
   if (may_be(gap.before) + may_be(&a) + may_be(&b) + may_be(gap.behind) < 2) return true;
-  // A joint turns as far beyond two points as from one point to the next (python -m bench moves),
-  // and where the branch ends as the root of how far that exists.
-  const double at_end = std::sqrt(std::max(a.least, b.least));
-  const auto turns_beyond = [&](std::size_t i) {
-    const double turned = most([&](const BranchPoint& from, const BranchPoint& to) {
-      const double one = std::abs(turn(i, from.q[i], to.q[i]));
-      return std::isnan(one) ? 0.0 : one;
-    });
-    return turned + at_end;
+  const bool ends = std::min(a.least, b.least) <= bend;
+  const unsigned swinging = ends && std::max(a.least, b.least) >= 0 ? this->swinging(gap) : 0;
+  // Sums of joints are not looked at one by one.
+  bool hides = ends || a.is_far() || b.is_far() || form_.sums != nullptr;
+  Norm norm(form_);
+  for (std::size_t i = 0; i < a.q.size(); ++i) {
+    Range range = this->range(gap, i, ends);
+    if (std::isnan(range.low)) continue;
+    if ((swinging >> i & 1U) != 0) range = {range.low - kPi, range.high + kPi};
+    const Reach one = reach(i, range.low, range.high, form_.margin);
+    norm.add(i, one.move);
+    if (!norm.is_below(best - kTooLittle)) return false;
+    hides = hides || one.meets_limit || range.high - range.low > kWide;
+  }
+  return hides;
+}
+
+bool MoveBounds::may_be_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
+                                double best) const {
+  /// The curve is longer than a straight line by no more than half as much again.
+  constexpr double kCurved = 1.5;
+  if (!a.exists() || !b.exists() || way.largest > kWide) return true;
+  // Where limits keep no joint from its nearest image, nor lie between both, they matter to
+  // neither; and where joints turn by less, an answer is not nearer than those beside it.
+  if (!(way.leaves_limits || a.is_blocked() || b.is_blocked())) return false;
+  if (way.largest < form_.margin) return false;
+  const double loose = way.leaves_limits ? 2 * std::min(a.loose, b.loose) : a.loose + b.loose;
+  return loose - kCurved * way.move <= 2 * (best - kTooLittle) &&
+         a.off + b.off - kCurved * way.largest <= 0;
+}
+
+MoveBounds::Range MoveBounds::range(const Gap& gap, std::size_t i, bool ends) const {
+  const auto change = [&](const BranchPoint* from, const BranchPoint* to) {
+    if (from == nullptr || to == nullptr) return lanes::kUnknown;
+    return turn(i, from->q[i], to->q[i]);
   };
-  // Where a branch ends as axes 4 and 6 are all but in line, their joints turn against each other
-  // by any angle.
-  const auto may_be_straight = [&] {
-    const double bent = a.q[4] - straight_;
-    const double bends = turn(4, a.q[4], b.q[4]);
-    const double around = turns_beyond(4);
-    return std::floor((bent + std::max(bends, 0.0) + around) / kPi) >
-           std::floor((bent + std::min(bends, 0.0) - around) / kPi);
-  };
-  const bool is_straight = a.exists() != b.exists() && may_be_straight();
-  const auto beyond = [&](std::size_t i, double /*turn*/) {
-    return is_straight && (i == 3 || i == 5) ? kPi : turns_beyond(i);
-  };
-  return between(a, b, beyond, best - kTooLittle).move < kInfinity;
+  const double d = change(&gap.a, &gap.b);
+  const double before = change(gap.before, &gap.a);
+  const double behind = change(&gap.b, gap.behind);
+  double around = beyond(d, before, behind);
+  if (!gap.exists()) {
+    // A joint turns back as far as from one point to the next (python -m bench moves).
+    around = std::abs(d);
+    if (std::abs(before) > around) around = std::abs(before);
+    if (std::abs(behind) > around) around = std::abs(behind);
+  }
+  // Where the branch ends, joints turn as the root of how far that exists.
+  if (ends) around += std::sqrt(std::max({gap.a.least, gap.b.least, 0.0}));
+  if (form_.turns[i] && std::abs(d) > kEitherWay) around = kPi;
+  // Two joints that meet limits at one place may do so but for rounding.
+  around += form_.margin;
+  const double from = gap.a.q[i];
+  return {from + std::min(d, 0.0) - around, from + std::max(d, 0.0) + around};
+}
+
+unsigned MoveBounds::swinging(const Gap& gap) const {
+  unsigned swinging = 0;
+  for (std::size_t i = 0; i < straight_.size(); ++i) {
+    if (std::isnan(straight_[i])) continue;
+    const Range range = this->range(gap, i, /*ends=*/true);
+    // Written so that NaN is nowhere.
+    const double low = std::floor((range.low - straight_[i]) / kPi);
+    const double high = std::floor((range.high - straight_[i]) / kPi);
+    // The swept joint, which is the last here, is before the first; it turns by what is known.
+    if (high > low) swinging |= (i > 0 ? 5U << (i - 1) : 2U);
+  }
+  return swinging;
 }
 
 double MoveBounds::inside_move(const Joints& q) const {

@@ -34,14 +34,12 @@ class MoveBounds {
  public:
   using Joints = std::array<double, 7>;
 
-  /// `straight`: where joint 5 turns axes 4 and 6 into one line, as it does half a turn from there;
-  /// NaN: nowhere [rad].
-  MoveBounds(const lanes::MoveForm& form, double straight) : form_(form), straight_(straight) {}
+  /// For each of six joints the angle at which it turns the axes beside it into one line, as it
+  /// does half a turn from there; NaN: nowhere [rad].
+  using Straight = std::array<double, 6>;
+  MoveBounds(const lanes::MoveForm& form, const Straight& straight)
+      : form_(form), straight_(straight) {}
 
-  /// Joints turn far that turn by more [rad], and by more than so many times what the swept one
-  /// does.
-  static constexpr double kWide = 0.7;
-  static constexpr double kSteeper = 4;
   /// What is shorter by less is not looked for [rad].
   static constexpr double kTooLittle = 1e-3;
   /// What turns by no more takes no part in a swing, and what stands still turns by less [rad].
@@ -75,43 +73,38 @@ class MoveBounds {
     return way;
   }
 
-  /// The curve is longer than a straight line by no more than half as much again.
-  static constexpr double kCurved = 1.5;
-  /// Whether there may be a shorter move than `best` to an answer between two points that are such
-  /// a way apart.
-  [[nodiscard]] static bool may_be_shorter(const BranchPoint& a, const BranchPoint& b,
-                                           const Way& way, double best) {
-    const double loose = way.leaves_limits ? 2 * std::min(a.loose, b.loose) : a.loose + b.loose;
-    return loose - kCurved * way.move <= 2 * best && a.off + b.off - kCurved * way.largest <= 0;
-  }
+  /// Whether there may be a shorter move than `best` between two points that are such a way apart,
+  /// as far as that can be told sooner than by may_hide_shorter().
+  [[nodiscard]] bool may_be_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
+                                    double best) const;
 
-  /// The same of each joint by itself.
-  [[nodiscard]] bool joints_may_be_shorter(const BranchPoint& a, const BranchPoint& b,
-                                           double best) const {
-    const Way way = this->way(a, b);
-    return may_be_shorter(a, b, way, best) && between(a, b, way, best).move < kInfinity;
-  }
-
-  /// Whether there may be one that neither point tells of: joints turn far between them, or one may
-  /// meet a limit there, where the branch enters the limits or another image is the nearest.
-  /// `usual`: what else joints turn between such points [rad].
-  [[nodiscard]] bool may_hide_shorter(const BranchPoint& a, const BranchPoint& b, const Way& way,
-                                      double usual, double best) const;
-
-  /// Whether a branch that is so far from being at two points (BranchPoint::least) may be between
-  /// them, where that changes by as much as `rise` from one point to the next.
-  [[nodiscard]] static bool may_be_between(double a, double b, double rise) {
-    return std::max(a, b) >= 0 || -a - b <= kCurved * rise;
-  }
-  /// Two points, at one of which a branch does not exist, or at neither; and those beside them,
-  /// null where these are not known.
+  /// Two points of a branch beside each other, which may exist at one of them only or at neither,
+  /// and those before and behind, null where these are not known.
   struct Gap {
     const BranchPoint* before;
     const BranchPoint &a, &b;
     const BranchPoint* behind;
+
+    /// Whether the branch exists at both.
+    [[nodiscard]] bool exists() const { return a.exists() && b.exists(); }
   };
-  /// Whether there may be a shorter move than `best` where the branch exists between them.
-  [[nodiscard]] bool may_be_shorter(const Gap& gap, double best) const;
+  /// Whether there may be a shorter move than `best` between the two that neither tells of: the
+  /// branch may end there, joints may turn far, or one may meet a limit, where the branch enters
+  /// the limits or another image is the nearest.
+  [[nodiscard]] bool may_hide_shorter(const Gap& gap, double best) const;
+
+  /// How far between two places a quantity may lie beyond its values at both, by what it changes by
+  /// from the one to the other, to the first and from the second; NaN: not known. Of a parabola
+  /// that is an eighth of what its changes differ by; this is twice that.
+  [[nodiscard]] static double beyond(double change, double before, double behind) {
+    constexpr double kBend = 0.25;
+    double bend = std::isnan(before) && std::isnan(behind) ? std::abs(change) : 0;
+    for (const double beside : {before, behind}) {
+      const double one = std::abs(change - beside);
+      if (one > bend) bend = one;
+    }
+    return kBend * bend;
+  }
 
   /// The nearest on the way from a point to another by such turns where joints swing: all of it is
   /// on the curve, one way round and the other.
@@ -127,14 +120,15 @@ class MoveBounds {
     double move;
     bool meets_limit;
   };
-  /// The least move of each joint between two points, together, and whether one may meet a limit;
-  /// infinite if it is not less than `best`.
-  [[nodiscard]] Reach between(const BranchPoint& a, const BranchPoint& b, const Way& way,
-                              double best) const;
-  /// The same where they may turn `beyond(joint, turn)` beyond both.
-  template <typename Beyond>
-  [[nodiscard]] Reach between(const BranchPoint& a, const BranchPoint& b, const Beyond& beyond,
-                              double best) const;
+  /// The values of a joint between two points; NaN where not known [rad or m]. `ends`: the branch
+  /// may end there.
+  struct Range {
+    double low, high;
+  };
+  [[nodiscard]] Range range(const Gap& gap, std::size_t joint, bool ends) const;
+  /// The joints, as bits, that may turn as they like beside an end there, as their axes come into
+  /// one line.
+  [[nodiscard]] unsigned swinging(const Gap& gap) const;
   /// Of a joint to any image of the values from `low` to `high` that is inside the limits, or so
   /// far outside [rad or m].
   [[nodiscard]] Reach reach(std::size_t joint, double low, double high, double outside) const;
@@ -166,7 +160,7 @@ class MoveBounds {
   };
 
   const lanes::MoveForm& form_;
-  double straight_;
+  const Straight& straight_;
 };
 
 }  // namespace iksel

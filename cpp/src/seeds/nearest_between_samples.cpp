@@ -43,30 +43,10 @@ std::uint64_t NearestOnCurve::find_loops(int branch) const {
   std::uint64_t loops = 0;
   for (std::uint64_t both = none & behind(none); both != 0; both &= both - 1) {
     const double* at = &far[static_cast<std::size_t>(__builtin_ctzll(both))];
-    const double a = at[1];
-    const double b = at[2];
-    // It comes nearest to being at the one or the other; unless another angle is what there is none
-    // of there: a straight line by the two on the other side then leads to where there is one.
-    const int place = __builtin_ctzll(both);
-    const bool is_beside = a < b ? at[3] > b : at[0] > a;
-    const bool leads_there = a < b ? 2 * a >= at[0] : 2 * b >= at[3];
-    if (is_beside && !(leads_there && lacks_another(place, branch))) continue;
-    double rise = std::abs(b - a);
-    if (a - at[0] > rise) rise = a - at[0];
-    if (b - at[3] > rise) rise = b - at[3];
-    if (MoveBounds::may_be_between(a, b, rise)) loops |= both & (~both + 1);
+    const double beyond = MoveBounds::beyond(at[2] - at[1], at[1] - at[0], at[3] - at[2]);
+    if (std::max(at[1], at[2]) + beyond >= 0) loops |= both & (~both + 1);
   }
   return loops;
-}
-
-bool NearestOnCurve::lacks_another(int place, int branch) const {
-  const auto lack_same = [&](int at, int other) {
-    return point(at, other).least == point(at, branch).least;
-  };
-  for (int other = 0; other < lanes::kWidth; ++other) {
-    if (lack_same(place - 1, other) != lack_same(place, other)) return true;
-  }
-  return false;
 }
 
 template <typename Places>
@@ -119,16 +99,12 @@ std::uint64_t NearestOnCurve::find_staying(int branch) const {
 bool NearestOnCurve::may_hide_shorter(int place, int branch) const {
   const BranchPoint a = point(place - 1, branch);
   const BranchPoint b = point(place, branch);
-  if (!a.exists() || !b.exists()) {
-    std::array<BranchPoint, 2> beside;
-    const auto known = [&](int at, std::size_t i) {
-      return is_known(at) ? &(beside[i] = point(at, branch)) : nullptr;
-    };
-    return bounds().may_be_shorter({known(place - 2, 0), a, b, known(place + 1, 1)}, best());
-  }
-  if (a.is_far() || b.is_far()) return bounds().joints_may_be_shorter(a, b, best());
-  return bounds().may_hide_shorter(a, b, bounds().way(a, b), MoveBounds::kSteeper * places_.step,
-                                   best());
+  if (!bounds().may_be_shorter(a, b, bounds().way(a, b), best())) return false;
+  std::array<BranchPoint, 2> beside;
+  const auto known = [&](int at, std::size_t i) {
+    return is_known(at) ? &(beside[i] = point(at, branch)) : nullptr;
+  };
+  return bounds().may_hide_shorter({known(place - 2, 0), a, b, known(place + 1, 1)}, best());
 }
 
 bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
@@ -158,13 +134,10 @@ bool NearestOnCurve::look_into(const BranchSpan& span, int depth) {
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const BranchPoint& a = nodes[i];
     const BranchPoint& b = nodes[i + 1];
-    const bool exists = a.exists() && b.exists();
-    const bool may_hide =
-        exists ? bounds().may_hide_shorter(a, b, ways[i], 0, best())
-               : bounds().may_be_shorter({i > 0 ? &nodes[i - 1] : nullptr, a, b,
-                                          i + 2 < nodes.size() ? &nodes[i + 2] : nullptr},
-                                         best());
-    if (!may_hide) continue;
+    if (!bounds().may_be_shorter(a, b, ways[i], best())) continue;
+    const BranchPoint* before = i > 0 ? &nodes[i - 1] : nullptr;
+    const BranchPoint* behind = i + 2 < nodes.size() ? &nodes[i + 2] : nullptr;
+    if (!bounds().may_hide_shorter({before, a, b, behind}, best())) continue;
     if (ways[i].is_swing()) {
       is_in_doubt_ = true;
       const BranchPoint nearest = bounds().nearest_on_swing(a, branches_.turns(a, b));

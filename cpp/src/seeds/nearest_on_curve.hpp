@@ -163,9 +163,6 @@ class NearestOnCurve {
   }
   /// The samples between which and those before a branch that is at neither may be, as bits.
   [[nodiscard]] std::uint64_t find_loops(int branch) const;
-  /// Whether the angle that there is none of at a place is not that at the one before: other
-  /// branches lack the same at one of them only.
-  [[nodiscard]] bool lacks_another(int place, int branch) const;
   /// The samples from which to the next a joint stays beyond the same limit, as bits.
   [[nodiscard]] std::uint64_t find_staying(int branch) const;
   /// Looks for the least moves in a span, at its nodes, and between these where there may be

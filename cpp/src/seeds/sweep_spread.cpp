@@ -144,8 +144,11 @@ class Sweep::Spread {
   }
   [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kCurveJoints>& from,
                              const std::array<double, kCurveJoints>& to) const {
-    const double wide = std::max(MoveBounds::kWide,
-                                 MoveBounds::kSteeper * sweep_.places_.step * (gap.to - gap.from));
+    // Joints turn far that turn by more [rad], and by more than so many times what the swept one
+    // does.
+    constexpr double kWide = 0.7;
+    constexpr double kSteeper = 4;
+    const double wide = std::max(kWide, kSteeper * sweep_.places_.step * (gap.to - gap.from));
     return !joints_.are_near(from, to, wide);
   }
 

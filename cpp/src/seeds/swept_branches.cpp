@@ -6,6 +6,31 @@
 #include "base/angle.hpp"
 
 namespace iksel {
+namespace {
+
+MoveBounds::Straight find_straight(const lanes::ClosedForm& form) {
+  MoveBounds::Straight straight;
+  straight.fill(lanes::kUnknown);
+  for (std::size_t i = 0; i + 1 < straight.size(); ++i) {
+    // Where it turns axis i + 1 nearest to the one before it.
+    const bool is_first = i == 0;
+    if (is_first && form.held_slide != 0) continue;
+    const Eigen::Vector3d before(is_first ? form.held_axis : form.h[i - 1]);
+    const Eigen::Vector3d axis(form.h[i]);
+    const Eigen::Vector3d behind(form.h[i + 1]);
+    const double c = before.dot(axis) * axis.dot(behind);
+    const double angle = std::atan2(before.dot(axis.cross(behind)), before.dot(behind) - c);
+    const Eigen::AngleAxisd turn(angle, axis);
+    const Eigen::Vector3d way = Eigen::Vector3d(is_first ? form.held_from : form.p[i - 1]) +
+                                turn * Eigen::Vector3d(form.p[i]);
+    const bool is_in_line = before.cross(turn * behind).norm() < kStructureTolerance &&
+                            before.cross(way).norm() < kStructureTolerance;
+    if (is_in_line) straight[i] = angle - form.offset[i];
+  }
+  return straight;
+}
+
+}  // namespace
 
 SweptBranches::SweptBranches(const ChainModel& model, const ClosedFormChain& chain,
                              const lanes::LaneKernels& kernels)
@@ -17,11 +42,7 @@ SweptBranches::SweptBranches(const ChainModel& model, const ClosedFormChain& cha
       offset_(model.kernel.joints[static_cast<std::size_t>(chain.held)].offset),
       turns_(model.joints.is_periodic(chain.held)) {
   chain_.use_limits(model);
-  const lanes::Turned& wrist = chain_.form.wrist;
-  const bool has_wrist = chain_.form.closure != lanes::Closure::three_parallel;
-  if (has_wrist && std::abs(wrist.c) + std::sqrt(wrist.r2) > 1 - kRounding) {
-    straight_ = std::atan2(wrist.b, wrist.a) - chain_.form.offset[4];
-  }
+  straight_ = find_straight(chain_.form);
 }
 
 Places SweptBranches::places(int count) const {

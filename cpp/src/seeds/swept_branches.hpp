@@ -171,7 +171,7 @@ class SweptBranches {
   const lanes::BranchPack* last_ = &all_;
   bool measures_moves_ = false;
   lanes::MoveForm move_form_{};
-  double straight_ = lanes::kUnknown;  ///< as MoveBounds has it
+  MoveBounds::Straight straight_{};
   lanes::MovePack moves_{};
 };
 

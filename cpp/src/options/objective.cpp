@@ -12,7 +12,7 @@ namespace iksel {
 namespace {
 
 /// The place of a joint named in `what`.
-Eigen::Index find_joint(const Robot& robot, const std::string& name, const char* what) {
+Eigen::Index index_of_joint(const Robot& robot, const std::string& name, const char* what) {
   const std::vector<std::string>& names = robot.joint_names();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return found - names.begin();
@@ -37,12 +37,12 @@ Objective Objective::preferred(const Robot& robot, const std::map<std::string, d
   }
   JointVector of_posture = JointVector::Zero(robot.dof());
   for (const auto& [name, value] : values) {
-    const Eigen::Index j = find_joint(robot, name, "preferred values");
+    const Eigen::Index j = index_of_joint(robot, name, "preferred values");
     posture[j] = value;
     of_posture[j] = 1;
   }
   for (const auto& [name, weight] : weights) {
-    const Eigen::Index j = find_joint(robot, name, "preferred weights");
+    const Eigen::Index j = index_of_joint(robot, name, "preferred weights");
     if (of_posture[j] == 0) {
       throw InvalidArgumentError("preferred weights: joint '" + name + "' has no preferred value");
     }

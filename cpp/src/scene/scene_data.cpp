@@ -13,10 +13,10 @@ namespace {
 /// A box of which each point is the centre of a ball.
 struct RoundBox {
   Eigen::Vector3d half;  ///< of its edges [m]
-  double radius;         ///< [m]
+  double radius = 0;     ///< [m]
 
   /// A box, a sphere or a capsule.
-  explicit RoundBox(const Obstacle& obstacle) : half(0.5 * obstacle.size), radius(0) {
+  explicit RoundBox(const Obstacle& obstacle) : half(0.5 * obstacle.size) {
     if (obstacle.shape == Obstacle::Shape::box) return;
     const bool is_capsule = obstacle.shape == Obstacle::Shape::capsule;
     half = {0, 0, is_capsule ? 0.5 * obstacle.length : 0.0};

@@ -45,7 +45,7 @@ std::string plain_numbers(const std::string& text) {
 
 /// A limit as urdfdom reads it. Infinity, which it does not know, is the largest number.
 std::string plain_limit(const std::string& text) {
-  const std::string number = plain_numbers(text);
+  std::string number = plain_numbers(text);
   const std::string size = lower_case(number.substr(number.find_first_not_of("+-") == 1 ? 1 : 0));
   if (size != "inf" && size != "infinity") return number;
   return number[0] == '-' ? "-1e308" : "1e308";

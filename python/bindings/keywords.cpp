@@ -125,11 +125,9 @@ std::vector<Pose> as_targets(const Solver& solver, py::handle poses,
 
 DoubleArray as_rows(const Solver& solver, py::handle poses, const TargetCriteria& criteria) {
   const int tips = solver.robot().tips();
-  // A sequence of none has no shape.
-  if ((py::isinstance<py::list>(poses) || py::isinstance<py::tuple>(poses)) &&
-      py::len(poses) == 0) {
-    return DoubleArray({0, 4, 4});
-  }
+  const bool is_sequence = py::isinstance<py::list>(poses) || py::isinstance<py::tuple>(poses);
+  // One of none has no shape.
+  if (is_sequence && py::len(poses) == 0) return DoubleArray({0, 4, 4});
   if (tips == 1) return as_poses(poses, "poses", common_task(solver, criteria));
   const std::string expected = "an (N, " + std::to_string(tips) + ", 4, 4) array";
   const DoubleArray array = as_shaped(poses, "poses", {-1, tips, 4, 4}, expected.c_str());

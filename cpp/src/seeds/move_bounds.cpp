@@ -4,9 +4,6 @@
 namespace iksel {
 namespace {
 
-/// Between two points joints turn far that turn by more: what is shortest may be far from both
-/// [rad].
-constexpr double kWide = 0.7;
 /// Of what turns so far it is not known which way round [rad].
 constexpr double kEitherWay = 2.5;
 

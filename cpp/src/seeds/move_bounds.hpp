@@ -40,6 +40,9 @@ class MoveBounds {
   MoveBounds(const lanes::MoveForm& form, const Straight& straight)
       : form_(form), straight_(straight) {}
 
+  /// Between two points joints turn far that turn by more: what is shortest may be far from both
+  /// [rad].
+  static constexpr double kWide = 0.7;
   /// What is shorter by less is not looked for [rad].
   static constexpr double kTooLittle = 1e-3;
   /// What turns by no more takes no part in a swing, and what stands still turns by less [rad].

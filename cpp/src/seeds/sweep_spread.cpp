@@ -144,11 +144,10 @@ class Sweep::Spread {
   }
   [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kCurveJoints>& from,
                              const std::array<double, kCurveJoints>& to) const {
-    // Joints turn far that turn by more [rad], and by more than so many times what the swept one
-    // does.
-    constexpr double kWide = 0.7;
+    // And by more than so many times what the swept one does.
     constexpr double kSteeper = 4;
-    const double wide = std::max(kWide, kSteeper * sweep_.places_.step * (gap.to - gap.from));
+    const double wide =
+        std::max(MoveBounds::kWide, kSteeper * sweep_.places_.step * (gap.to - gap.from));
     return !joints_.are_near(from, to, wide);
   }
 

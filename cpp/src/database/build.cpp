@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/message_text.hpp"
-#include "base/pace.hpp"
 #include "base/parallel.hpp"
 #include "base/pseudo_inverse.hpp"
 #include "base/rotation.hpp"
@@ -117,10 +116,15 @@ void make_content(const ChainModel& model, const DatabaseOptions& options, const
   const SampleSpace space = describe(model, options, data);
   const std::size_t updates = update_count(options);
   const std::size_t total = updates + data.size;
-  Pace pace(progress, total);
-  pace(0);
-  const std::vector<double> samples =
-      make_samples(space, options, [&](std::size_t done) { pace(done); });
+  std::size_t next_told = 0;
+  // Only what is new, so that every call tells more than the one before.
+  const auto tell = [&](std::size_t done) {
+    if (!progress || done < next_told) return;
+    next_told = done + 1;
+    progress(done, total);
+  };
+  tell(0);
+  const std::vector<double> samples = make_samples(space, options, tell);
 
   const auto key_dim = static_cast<std::size_t>(data.key_dim);
   const std::size_t length = DatabaseData::record_length(model.dof);
@@ -137,8 +141,8 @@ void make_content(const ChainModel& model, const DatabaseOptions& options, const
     };
   };
   // The end is told when all is done.
-  parallel_for(data.size, /*chunk=*/512, resolve_threads(options.threads), make_worker,
-               [&](std::size_t done) { pace(updates + std::min(done, data.size - 1)); });
+  parallel_for(data.size, /*chunk=*/256, resolve_threads(options.threads), make_worker,
+               [&](std::size_t done) { tell(updates + std::min(done, data.size - 1)); });
   check_samples(keys, numbers, model);
   // The tree made of the keys sets the order in which everything is stored.
   const std::vector<std::uint32_t> order = make_kd_tree(keys, data.size, data.key_dim)->order();
@@ -146,7 +150,7 @@ void make_content(const ChainModel& model, const DatabaseOptions& options, const
   reorder(records, length, order);
   write_header(data, bytes.get(), size);
   data.use({bytes, size});
-  if (progress) progress(total, total);
+  tell(total);
 }
 
 }  // namespace

@@ -90,19 +90,10 @@ def off_by(
     poses: np.ndarray, position: float, rotation: float, random: np.random.Generator
 ) -> np.ndarray:
     """Poses in place of which others are, so far away [m, rad]."""
-    moves, turns = random.normal(size=(2, len(poses), 3))
-    out = poses.copy()
-    for pose, move, turn in zip(out, moves, turns, strict=True):
-        pose[:3, 3] += position * move / np.linalg.norm(move)
-        # By Rodrigues' formula.
-        x, y, z = turn / np.linalg.norm(turn)
-        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        by = (
-            np.eye(3)
-            + np.sin(rotation) * cross
-            + (1 - np.cos(rotation)) * cross @ cross
-        )
-        pose[:3, :3] = by @ pose[:3, :3]
+    ways = random.normal(size=(2, len(poses), 3))
+    moves, turns = ways / np.linalg.norm(ways, axis=2, keepdims=True)
+    out = poses @ iksel.pose_from_rotation_vector(np.zeros(3), rotation * turns)
+    out[:, :3, 3] += position * moves
     return out
 
 

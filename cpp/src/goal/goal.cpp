@@ -58,6 +58,7 @@ bool Goal::is_out_of_reach() const {
   // What rounding leaves of a stretched arm's length, which is more than the tolerance of a huge
   // one.
   if (distance > (1 + kRounding) * model_.reach_of_tcp() + task_.position_tolerance()) return true;
+  if (model_.unmoved.is_empty()) return false;
   const Vector6 allowed = task_.lower().cwiseAbs().cwiseMax(task_.upper().cwiseAbs());
   return model_.unmoved.excludes(target_, task_.position_tolerance() + allowed.head<3>().sum(),
                                  task_.rotation_tolerance() + allowed.tail<3>().sum());

@@ -17,6 +17,9 @@ class Unmoved {
   /// is so everywhere: it is a sum of products of one power, sine or cosine of each joint.
   Unmoved(const std::vector<Pose>& poses, double unit);
 
+  /// Whether it is not known of anything.
+  [[nodiscard]] bool is_empty() const { return parts_.empty(); }
+
   /// Whether no configuration has a pose so near to that one [m, rad]: the part of the difference
   /// from any of the chain's poses that no joint changes is longer than the tolerances allow.
   [[nodiscard]] bool excludes(const Pose& pose, double position, double rotation) const;

@@ -144,7 +144,7 @@ class Sweep::Spread {
   }
   [[nodiscard]] bool is_wide(const Gap& gap, const std::array<double, kCurveJoints>& from,
                              const std::array<double, kCurveJoints>& to) const {
-    // And by more than so many times what the swept one does.
+    // Far is farther than that, and than so many times what the swept joint turns.
     constexpr double kSteeper = 4;
     const double wide =
         std::max(MoveBounds::kWide, kSteeper * sweep_.places_.step * (gap.to - gap.from));

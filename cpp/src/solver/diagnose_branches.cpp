@@ -56,6 +56,7 @@ struct Trace {
 /// The joints whose angles take a root, in the kernel's order, of each closure without a held
 /// joint.
 constexpr int kRootJoints[][3] = {{0, 2, 4}, {2, 0, 4}, {0, 2, 4}, {2, 1, 4}, {0, 4, 2}};
+static_assert(static_cast<int>(Closure::three_parallel) == 4, "the last of them");
 
 bool bends_elbow(Closure closure) {
   return closure == Closure::parallel_23 || closure == Closure::intersect_12 ||

@@ -38,8 +38,10 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
                              ? is_empty || (answers.has_any() && has_arrived)
                              : enumerated.was_tried() && branches.is_certain_but_for_limits();
   const bool is_through = are_known && (is_empty || !branches.has_families());
-  // Of full poses, as the roots are.
-  if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
+  // Of full poses, as the roots are. Where these leave a doubt, it is sooner told by intervals than
+  // by seeds.
+  const bool is_proof_wanted = parts.request.prove || !is_through;
+  if (kind == Proof::sweep && is_proof_wanted && !answers.has_any() &&
       parts.workspace.lanes->enclosure && parts.workspace.lanes->enclosure->rules_out(Y)) {
     return Explored::done(Proof::intervals);
   }

@@ -41,6 +41,15 @@ if TYPE_CHECKING:
 PLOTTED = "uniform"
 """Targets whose distributions are kept for the plots."""
 
+ORIGIN = (
+    "Generated. Figures are of the runs named here, but for those that the text calls "
+    "published, and rows that say to be of another run. *Proven* is what IKSel says of "
+    "its own no; *brute force* is made of IKSel's own calls: its iteration from many "
+    "seeds, all that `solve_all` gives, `self_motion` from end to end. Where another "
+    "solver's answers are held against IKSel's, that solver is named."
+)
+"""Where figures come from, and whose word the words are."""
+
 DIGITS = 6
 """Significant digits of the figures that are kept."""
 
@@ -171,8 +180,7 @@ def _head(report: Report) -> str:
     doubts = provenance.doubts(report["machine"])
     if doubts:
         lines.insert(0, f"**Not to be published**: {'; '.join(doubts)}.")
-    title = "# Results\n\nGenerated; nothing in here is written by hand."
-    return "\n\n".join([title, *lines])
+    return "\n\n".join(["# Results", ORIGIN, *lines])
 
 
 def _made(part: dict[str, Any]) -> str:

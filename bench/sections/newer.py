@@ -41,8 +41,10 @@ def text(view: View) -> str:
     ]
     numpy = cells[0][3]["count"]
     run = [f"{rate:.2f}; {NONE}, {n:.2f}, {NONE}" for rate, n in published.NEWER_RUN]
-    rows.append(["the authors' code, on 5,000 of the targets", *run])
+    theirs = "the authors' code, 5,000 targets; not of this run, see above"
+    rows.append([theirs, *run])
     header = ["success %; mean time, attempts, steps", *HEADER]
+    count = cells[0][0]["count"]
     about = (
         "`SolverOptions.paper(2026)` is what the authors' later repository, "
         "[wanweiwei07/one](https://github.com/wanweiwei07/one) at commit "
@@ -53,9 +55,13 @@ def text(view: View) -> str:
         "to give up when the error grows, but never writes the variable that it "
         "compares with; so there is no such stop. It tests its tolerances at the "
         "flange, and `paper(2026)` at the TCP. The row in numpy is written from that "
-        f"description (`bench/paper/newer.py`), over {numpy:,} targets. The "
-        "repository states no rate, and as time "
-        f"{published.NEWER_MS:.0f} ms in Python. One row by itself: "
+        f"description (`bench/paper/newer.py`), over {numpy:,} targets, the rows above "
+        f"it over {count:,}, uniform in the limits, seed 1. The last row is that code "
+        "itself, run once by hand in November 2026 (`NEWER_RUN` of "
+        "`bench/paper/published.py`). The repository states no rate; all that it says "
+        "of time is the title of a commit, "
+        f'"{published.NEWER_TITLE}": {published.NEWER_MS:.0f} ms in Python, on which '
+        "robot and machine it does not say. One row by itself: "
         f"`{command_line(cells[0][1])}`; this table: `python -m bench paper2026`."
     )
     title = "### The authors' newer selection"

@@ -18,6 +18,18 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
+def bullets(lines: Iterable[str]) -> str:
+    """A list."""
+    return "\n".join(f"- {line}" for line in lines)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: a, b and c, or "none"; semicolons where they have commas."""
+    *first, last = names or ["none"]
+    between = "; " if any("," in name for name in names) else ", "
+    return f"{between.join(first)} and {last}" if first else last
+
+
 def microseconds(value: float | None) -> str:
     """A time [us] with as many digits as mean something."""
     if value is None:

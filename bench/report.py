@@ -14,6 +14,7 @@ from bench.plots import draw_all
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.sections import (
+    absent,
     analytic,
     ikgeo,
     learned,
@@ -150,6 +151,7 @@ def render(report: Report, folder: Path) -> None:
             rivals.text(view),
             no.text(view),
             analytic.text(view),
+            absent.text(),
             random_builds.text(view),
             tails.text(view),
             paper.text(view),

@@ -151,7 +151,7 @@ def render(report: Report, folder: Path) -> None:
             rivals.text(view),
             no.text(view),
             analytic.text(view),
-            absent.text(),
+            absent.text(view),
             random_builds.text(view),
             tails.text(view),
             paper.text(view),

@@ -3,8 +3,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import iksel
 from bench.markdown import listed
+
+if TYPE_CHECKING:
+    from bench.view import View
 
 TRIED = "November 2026, on PyPI and Debian 12"
 SOLVERS = {
@@ -32,8 +37,10 @@ FULL_POSE = 6
 """Joints that it takes to reach poses in general."""
 
 
-def text() -> str:
-    """The whole section."""
+def text(view: View) -> str:
+    """The whole section; empty where no solver was asked."""
+    if not view.has_any("asked"):
+        return ""
     rows = [f"| {solver} | {why} |" for solver, why in SOLVERS.items()]
     lines = ["| solver | why |", "|---|---|", *rows]
     return "\n\n".join(

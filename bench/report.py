@@ -10,6 +10,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from bench import machine, provenance
+from bench.markdown import contents
 from bench.plots import draw_all
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.rivals.base import UnsupportedError
@@ -147,7 +148,6 @@ def render(report: Report, folder: Path) -> None:
     text = "\n\n".join(
         part
         for part in (
-            _head(report),
             rivals.text(view),
             no.text(view),
             analytic.text(view),
@@ -164,6 +164,7 @@ def render(report: Report, folder: Path) -> None:
         )
         if part
     )
+    text = "\n\n".join([_head(report), contents(text), text])
     drawn = draw_all(view, folder / "plots")
     text = "\n".join(
         line

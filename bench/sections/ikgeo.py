@@ -159,7 +159,7 @@ def _verdict(view: View) -> str:
     )
     return (
         f"The first of these rows against the published rates, in points: "
-        f"{', '.join(found)} (within {POINTS:g} aimed at: {word})."
+        f"{', '.join(found)} (within {POINTS:g} points aimed at: {word})."
     )
 
 

@@ -174,11 +174,11 @@ def tried_proofs(view: View) -> str:
     proofs = sum(cell["proofs"] for cell in cells.pop(OURS))
     counts = {name: sum(cell["proofs"] for cell in of) for name, of in cells.items()}
     refuted = sum(cell["disproved"] for of in cells.values() for cell in of)
-    tried = ", ".join(f"{name} {count:,}" for name, count in counts.items() if count)
+    tried = "; ".join(f"{name} {count:,}" for name, count in counts.items() if count)
     return (
         f"IKSel gave {proofs:,} proofs that there is no answer. Other solvers were "
-        f"asked for one where it did: {tried or 'none'}; proofs that their answers "
-        f"refute: {refuted}."
+        f"asked for an answer where it did: {tried or 'none'}. Proofs that their "
+        f"answers refute: {refuted}."
     )
 
 

@@ -79,9 +79,10 @@ def _our_no(cell: Result | None) -> str:
     share = percent(cell["proven"], noes, 1)
     if cell["proven_unasked"] == cell["proven"]:
         return f"{text}, {share} % proven"
-    unasked = percent(cell["proven_unasked"], noes, 1)
+    unasked = cell["proven_unasked"]
+    sure = f"{percent(unasked, noes, 1)} % proven" if unasked else "none proven"
     proof = microseconds(cell["proven_us"][0])
-    return f"{text}, {unasked} % proven; `prove=True`: {proof} µs, {share} %"
+    return f"{text}, {sure}; `prove=True`: {proof} µs, {share} % proven"
 
 
 def machine(view: View, section: str) -> str:
@@ -204,9 +205,10 @@ def _no_conditions(view: View) -> list[str]:
             "targets, or a tenth of them where there is no closed form."
         ),
         (
-            "*Proven*: IKSel says that there is certainly no answer. Counted with "
-            "`prove=True`; *unasked* are those without. *By sweep*: one joint was "
-            "swept over its range; *searched*: seeds were tried. Neither is certain."
+            "*Proven*: IKSel says that there is certainly no answer, asked with "
+            "`prove=True`; in brackets how many of them it proves *unasked*, where "
+            "that is fewer. *By sweep*: one joint was swept over its range; "
+            "*searched*: seeds were tried. Neither is certain."
         ),
         "*An enumerator's no* is as in the table above.",
         (

@@ -517,7 +517,7 @@ class TestNo:
             cells.append({"settings": settings, "result": result})
         told = no_section.tried_proofs(View({"size": vars(QUICK), "cells": cells}))
         assert "gave 40 proofs" in told
-        assert "EAIK 30, KDL LMA 3; proofs that their answers refute: 1" in told
+        assert "EAIK 30; KDL LMA 3. Proofs that their answers refute: 1." in told
 
     def test_wrong_proofs_and_answers_are_told(self):
         wanted = no_plan.no_cell("ur3", "IKSel", "uniform", QUICK)

@@ -292,7 +292,7 @@ class TestReadme:
         [
             (0, 0, "4.00 µs, none proven"),
             (8, 8, "4.00 µs, 80.0 % proven"),
-            (0, 8, "4.00 µs, 0.0 % proven; `prove=True`: 20.0 µs, 80.0 %"),
+            (0, 8, "4.00 µs, none proven; `prove=True`: 20.0 µs, 80.0 % proven"),
         ],
     )
     def test_our_no_says_what_is_certain(self, unasked, proven, told):

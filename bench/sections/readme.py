@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 from bench.analytic.plan import KINDS
 from bench.arms import RIVAL_ARMS
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
-from bench.markdown import NONE, bullets, listed, microseconds, percent, table
+from bench.markdown import NONE, bullets, microseconds, percent, table
 from bench.plans import no as plan
 from bench.plans.rivals import rival_cell
 from bench.random_builds import RESTARTS
-from bench.rivals import RIVALS, timed_in_cpp
 from bench.sections import fastest, random_builds
 from bench.sections.cut_offs import ENOUGH
 from bench.sections.no import tried_proofs
-from bench.sections.rivals import OURS
+from bench.sections.rivals import OURS, TIMES
 from bench.size import SEED
 
 if TYPE_CHECKING:
@@ -114,9 +113,8 @@ def _conditions(view: View) -> list[str]:
     return [
         (
             f"Targets: {count:,} per robot (other solvers {fewer}), uniform in the "
-            f"joint limits, seed {SEED}, so that all can be reached. One pose at a "
-            f"time from Python, but for {listed(timed_in_cpp(RIVALS))}, which are "
-            "timed in C++. Failures are in every mean."
+            f"joint limits, seed {SEED}, so that all can be reached; one pose at a "
+            f"time. {TIMES}"
         ),
         (
             f"*Solved*: an answer within {POSITION_TOLERANCE:g} m and "

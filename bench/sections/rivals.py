@@ -69,6 +69,13 @@ def text(view: View) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
+TIMES = (
+    "Times are of each call, failures included, from Python, but those of "
+    f"{listed(timed_in_cpp(RIVALS))} in C++."
+)
+"""What a time of this section is of."""
+
+
 def _conditions() -> str:
     return bullets(
         (
@@ -80,8 +87,7 @@ def _conditions() -> str:
             ),
             (
                 "One after another in one process per solver, on one thread where the "
-                "solver lets us choose. Times are of each call, failures included, "
-                f"from Python, but those of {listed(timed_in_cpp(RIVALS))} in C++."
+                f"solver lets us choose. {TIMES}"
             ),
             (
                 "An answer is right if bench's own forward kinematics is within "

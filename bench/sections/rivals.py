@@ -12,7 +12,7 @@ from bench.markdown import NONE, bullets, listed, microseconds, percent, table
 from bench.plans.rivals import rival_cell
 from bench.plans.shared import BESIDE_LEVEL, at_level
 from bench.rivals import RIVALS, timed_in_cpp
-from bench.sections import batches, counts
+from bench.sections import batches, target_counts
 from bench.size import SEED
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def text(view: View) -> str:
         "![Share of targets solved over time](plots/success_over_time.svg)",
         "### Random targets: mean (p99) in µs",
         _times(view, "uniform"),
-        counts.text(view, "uniform"),
+        target_counts.text(view, "uniform"),
         *_verdicts(view),
         "### Random targets: right answers in percent",
         _rights(view, "uniform"),
@@ -52,14 +52,14 @@ def text(view: View) -> str:
     ]
     for kind, title in KIND_TITLES.items():
         parts += [f"### {title}", _rights_and_times(view, kind)]
-        parts.append(counts.text(view, kind))
+        parts.append(target_counts.text(view, kind))
         if kind == "lines":
             continue
         parts.append(_enough(view, kind))
     parts += [
         "### Out of reach: mean (p99) in µs until a solver says so",
         _times(view, "unreachable"),
-        counts.text(view, "unreachable"),
+        target_counts.text(view, "unreachable"),
         _unreachable_claims(view),
         "### In batches",
         batches.text(view),

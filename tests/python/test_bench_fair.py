@@ -35,7 +35,7 @@ from bench.plans import rivals
 from bench.plans.shared import at_level
 from bench.rivals import RIVALS
 from bench.sections import choices as choices_section
-from bench.sections import counts, cut_offs, fastest
+from bench.sections import cut_offs, fastest, target_counts
 from bench.sections import rivals as rivals_section
 from bench.settings import targets_of
 from bench.size import QUICK, Job
@@ -211,11 +211,11 @@ class TestFair:
             settings = rivals.rival_cell("cvr038", name, "lines", QUICK)
             cells.append((settings, {"count": count}))
         settings = rivals.rival_cell("panda", "OptIK", "lines", QUICK)
-        told = counts.text(
+        told = target_counts.text(
             View(report_of([*cells, (settings, {"count": 90})])), "lines"
         )
         assert told == "Targets per robot, seed 1: 90 (IKSel: 900)."
-        assert counts.text(View(report_of([])), "lines") == ""
+        assert target_counts.text(View(report_of([])), "lines") == ""
 
     def test_the_least_cut_off(self):
         """Of 1,000 calls of 1 to 1,000 us it is 999; without that many, none."""

@@ -96,6 +96,17 @@ Explored explore_any(const Parts& parts, const Pose& Y, bool at_samples = true) 
   if (none == Proof::none && move_inside(sweep.found())) return any;
   return Explored::done(none);
 }
+/// For any, once all else has found none and nothing is proven: by the ends of its arcs.
+template <typename Parts>
+void explore_ends(const Parts& parts) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  const bool is_worth_it = lanes.ends && !lanes.has_closed_ends() && !parts.answers.has_any();
+  if (!is_worth_it || !parts.answers.should_continue()) return;
+  lanes.ends->begin();
+  for (std::size_t i = 0; i < lanes.ends->size(); ++i) lanes.ends->find(i, parts.goal.target());
+  const auto count = static_cast<std::size_t>(lanes.ends->count());
+  parts.refine_rows(lanes.ends->found().data(), count, /*are_answers=*/false, Width::narrow);
+}
 /// For one that is free in the goal's scene.
 Explored explore_free_curve(const FirstSearch& parts, const Pose& Y);
 /// For what the Collector wants, if that can be had there: the nearest, or a spread.

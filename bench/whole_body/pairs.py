@@ -26,8 +26,8 @@ IN_TIME = 1.5
 """So many times what a motion takes by the limits of speed."""
 
 
-def random_pair(seed: int, shared: int = 1) -> Body:
-    """Two arms of seven joints, mounted anyhow on joints that turn or slide."""
+def random_pair(seed: int, shared: int = 1, sides: str = "ab") -> Body:
+    """Two arms or more, of seven joints, mounted anyhow on turning or sliding ones."""
     rng = np.random.default_rng([seed, 4711])
     text = '<robot name="pair"><link name="base"/>'
     for i in range(shared):
@@ -44,7 +44,7 @@ def random_pair(seed: int, shared: int = 1) -> Body:
             <origin xyz="{_words(place)}"/>
             <axis xyz="{_words(axis / np.linalg.norm(axis))}"/>
             <limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>"""
-    for side in ("a_", "b_"):
+    for side in (f"{name}_" for name in sides):
         build = BUILDS[rng.integers(len(BUILDS))]
         arm = sketch(build, int(rng.integers(1_000_000))).urdf()
         arm = re.sub(r"</?robot.*?>", "", arm)
@@ -53,7 +53,8 @@ def random_pair(seed: int, shared: int = 1) -> Body:
         text += f"""<joint name="{side}mount" type="fixed">
             <parent link="torso{shared - 1}"/><child link="{side}l0"/>
             <origin xyz="{_words(place)}" rpy="{_words(turn)}"/></joint>"""
-    return body_of(f"pair{seed}", text + "</robot>", "base", ("a_tip", "b_tip"))
+    tips = tuple(f"{name}_tip" for name in sides)
+    return body_of(f"pair{seed}", text + "</robot>", "base", tips)
 
 
 def nearest_of_pairs(

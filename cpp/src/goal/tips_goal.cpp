@@ -34,9 +34,15 @@ TipsGoal::TipsGoal(const TipsModel& model, std::vector<TaskSpace> tasks, std::ve
   }
 }
 
+bool TipsGoal::stands_still(int tip) const {
+  const int frame = frame_of(tip);
+  return frame < 0 || (task(frame).is_full_pose() && stands_still(frame));
+}
+
 Pose TipsGoal::target_at(int tip, const JointVector& q) const {
   const int frame = frame_of(tip);
-  return frame < 0 ? target(tip) : pose_of(frame, q) * target(tip);
+  if (frame < 0) return target(tip);
+  return (stands_still(tip) ? target_at(frame, q) : pose_of(frame, q)) * target(tip);
 }
 
 int TipsGoal::fixed_axes() const {

@@ -33,7 +33,9 @@ class TipsGoal {
   }
   /// All tips, each after the one in whose frame its target is.
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
-  /// That tip's target in the base frame, with the other tips where q puts them.
+  /// Whether that tip's target is the same in the base frame wherever the joints are.
+  [[nodiscard]] bool stands_still(int tip) const;
+  /// That tip's target in the base frame, with the other tips where q puts them, if it moves.
   [[nodiscard]] Pose target_at(int tip, const JointVector& q) const;
 
   [[nodiscard]] int fixed_axes() const;

@@ -63,7 +63,7 @@ bool ArmSearch::has_all_arms() const {
 bool ArmSearch::knows_nearest() const {
   for (int i = 0; i < goal_.count(); ++i) {
     const StructureKind kind = solvers_[static_cast<std::size_t>(i)].of_arm;
-    if (!has_arm(i) || goal_.frame_of(i) >= 0 || kind == StructureKind::searched ||
+    if (!has_arm(i) || !goal_.stands_still(i) || kind == StructureKind::searched ||
         !goal_.task(i).task().is_full_pose()) {
       return false;
     }

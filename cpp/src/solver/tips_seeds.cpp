@@ -136,7 +136,7 @@ bool ArmSeeds::next_stage() {
   failed_ = 0;
   extend(0, q);
   const bool are_apart = std::all_of(order_.begin(), order_.end(),
-                                     [&](int tip) { return goal_.tips()->frame_of(tip) < 0; });
+                                     [&](int tip) { return goal_.tips()->stands_still(tip); });
   if (seeds_.empty() && are_apart) {
     std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(failed_),
                 order_.end());
@@ -166,8 +166,8 @@ void ArmSeeds::extend(std::size_t k, JointVector q) {
 
 const std::vector<JointVector>& ArmSeeds::solve(int tip, const JointVector& q, Behind& behind) {
   auto& found = behind.arms[static_cast<std::size_t>(tip)];
-  // Of a target in the base frame they are the same whatever the other arms do.
-  if (found && goal_.tips()->frame_of(tip) < 0) return *found;
+  // Of a target that stands still they are the same whatever the other arms do.
+  if (found && goal_.tips()->stands_still(tip)) return *found;
   found.emplace();
   // Where the nearest is known it is found, or that there is none, at once.
   const bool is_quick = effort_ == Effort::quick && !knows_nearest_;

@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 MEASURING = (
     "analytic/cells.py",
+    "analytic/counted.py",
     "arms.py",
     "branches.py",
     "cells.py",
@@ -47,6 +48,7 @@ MEASURING = (
     "paper/paired.py",
     "paper/seeds_shown.py",
     "requests.py",
+    "restarts.py",
     "seed_makers.py",
     "tips.py",
     "whole_body/cells.py",

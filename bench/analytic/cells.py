@@ -25,7 +25,7 @@ from bench.check import (
 )
 from bench.rivals import ENUMERATORS
 from bench.rivals.enumerator import WAYS
-from bench.timing import least_times, mean_median
+from bench.timing import PASSES, least_times, mean_median
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,9 +38,6 @@ if TYPE_CHECKING:
     from bench.rivals.enumerator import Enumerator
     from bench.store import Settings
     from bench.targets import Targets
-
-PASSES = 3
-"""Runs of each way, the ways in turns; of each call the least time counts."""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ import numpy as np
 
 import iksel
 from bench.analytic.cells import asked
+from bench.analytic.counted import counted
 from bench.arms import load_arm
 from bench.branches import all_branches, judged, near_branches
 from bench.check import judge, right
@@ -202,6 +203,7 @@ ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "ikgeo_enumeration": enumerated,
     "first_attempt": first_attempt,
     "asked": asked,
+    "counted": counted,
 }
 """Functions of an arm, its targets and settings, by the names under "cell"."""
 

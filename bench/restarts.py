@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from bench.targets import Targets
 
 MORE_RESTARTS = 20_000
-"""Of poses where solve_all has a branch that RESTARTS did not find: are there too few?"""
+"""For poses where RESTARTS lack a branch of solve_all: whether they are too few."""
 
 
 def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:

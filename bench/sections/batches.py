@@ -63,12 +63,13 @@ def _batch_verdict(view: View) -> list[str]:
             factors.append(f"{factor:.2f} ({_threads(threads)})")
     if not factors:
         return []
-    return [
-        f"All branches on `{robot}`: {OURS} is {', '.join(factors)} times as fast as "
-        f"{name}, which gets all poses in one call and leaves the limits out. {OURS} has no batch of "
-        "`solve_all`: it is called pose by pose from Python, on two threads each half "
-        "of the poses."
-    ]
+    compared = f"{OURS} is {', '.join(factors)} times as fast as {name}"
+    note = (
+        f"All branches on `{robot}`: {compared}, which gets all poses in one call and "
+        f"leaves the limits out. {OURS} has no batch of `solve_all`: it is called pose "
+        "by pose from Python, on two threads each half of the poses."
+    )
+    return [note]
 
 
 def _threads(count: int) -> str:

@@ -81,12 +81,12 @@ def _conditions(view: View) -> str:
         "solver, on one thread where the solver lets us choose; times are of each "
         "call, failures included, and from Python unless the table of settings says "
         f"C++; of solvers that are through their targets in {SHORT_S:g} s the least of "
-        f"{PASSES} passes of each call. An answer is right if bench's own forward kinematics is within "
-        f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the target and "
-        "it lies inside the limits (of an analytic solver's branches, one has to "
-        "be). Solvers that need a start all get the same random one. Their "
-        "tolerances are set so that their answers can pass: some defaults are of a "
-        "squared error."
+        f"{PASSES} passes of each call. An answer is right if bench's own forward "
+        f"kinematics is within {POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad "
+        "of the target and it lies inside the limits (of an analytic solver's "
+        "branches, one has to be). Solvers that need a start all get the same random "
+        "one. Their tolerances are set so that their answers can pass: some defaults "
+        "are of a squared error."
     )
 
 

@@ -25,7 +25,7 @@ SOLVER = iksel.Solver
 
 
 class Odd:
-    """solve_all without a branch of target 0, one of target 1 twice, 2 with nonsense."""
+    """solve_all without a branch of target 0, one of 1 twice, nonsense of 2."""
 
     def __init__(self, robot):
         self._solver = SOLVER(robot)
@@ -75,5 +75,7 @@ def test_the_rate_is_of_poses_that_lack_none():
         {"size": vars(QUICK), "cells": [{"settings": settings, "result": result}]}
     )
     text = section.text(view)
-    assert "is lacking in 100.00 (at least 99.701 % at 95 %; 99.5 aimed at: hold" in text
+    assert (
+        "is lacking in 100.00 (at least 99.701 % at 95 %; 99.5 aimed at: hold" in text
+    )
     assert "210 more branches in 206 poses (of 52 of these 20,000 restarts" in text

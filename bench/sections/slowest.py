@@ -11,7 +11,7 @@ from bench.tails.plan import KINDS, calls_cell
 from bench.tails.slowest import AGAIN, AROUND_M, AROUND_RAD, OTHERS, SLOWEST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from bench.store import Settings
     from bench.view import View
@@ -155,9 +155,21 @@ def headline(view: View) -> str:
             f"{_most(cells, 'came')}, of the targets alone {_most(cells, 'least')}. "
             f"The slowest call took {microseconds(first[came]['us'])} µs (`{came}`, "
             f"{cause(first[came])}), the slowest by its target "
-            f"{microseconds(worst['again_us'])} µs (`{slow}`, {by_target(worst)})."
+            f"{microseconds(worst['again_us'])} µs (`{slow}`, {by_target(worst)}). "
+            + _edges([cell["edges"] for cell in cells.values()])
         )
     return " ".join(sentences)
+
+
+def _edges(counts: Sequence[dict[str, int]]) -> str:
+    """How much more often slow targets lie at an edge of what has answers."""
+    looked = sum(edges["looked"] for edges in counts)
+    slow, others = (sum(edges[of] for edges in counts) for of in ("slow", "others"))
+    return (
+        f"Of the {looked:,} targets that are the slowest by themselves "
+        f"{percent(slow, looked, 0)} % lie at such an edge, of as many others "
+        f"{percent(others, looked, 0)} %."
+    )
 
 
 def _most(cells: dict[str, dict[str, Any]], times: str) -> str:

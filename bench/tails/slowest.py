@@ -44,13 +44,15 @@ AROUND = 20
 """Poses around each of these."""
 AROUND_M, AROUND_RAD = 1e-3, 1e-3
 """How far from it, in random directions and about random axes."""
+EDGES = 50
+"""Targets, the slowest and others, that are asked whether they lie at an edge."""
 
 
 def calls(settings: Settings) -> dict[str, Any]:
     """Quantiles as they came and by the least times, and the slowest calls of both."""
     arm = load_arm(settings["robot"])
     solver = iksel.Solver(arm.robot)
-    came, least, slow = [], [], []
+    came, least, slow, others = [], [], [], np.empty((0, 4, 4))
     for first in range(0, settings["count"], CHUNK):
         n = min(CHUNK, settings["count"] - first)
         seed = settings["seed"] + first
@@ -62,6 +64,7 @@ def calls(settings: Settings) -> dict[str, Any]:
             | {"pose": poses[i]}
             for i in np.flatnonzero(asked)
         ]
+        others = poses[:EDGES] if first == 0 else others
         came.append(times)
         least.append(mended)
     by_machine = sum(call["us"] > OTHERS * call["again_us"] for call in slow)
@@ -72,6 +75,7 @@ def calls(settings: Settings) -> dict[str, Any]:
         "by_machine": by_machine,
         "slowest": _first(solver, slow, "us"),
         "slowest_again": _first(solver, slow, "again_us"),
+        "edges": _edges(solver, slow, others),
         "stages": _stages(solver, settings),
     }
 
@@ -142,6 +146,26 @@ def explained(solver: iksel.Solver, pose: Array, seed: int) -> dict[str, Any]:
         "stages": least,
         "around": {"count": AROUND, "answers": answers, "median_us": median},
     }
+
+
+def _edges(
+    solver: iksel.Solver, slow: Sequence[dict[str, Any]], others: Array
+) -> dict[str, int]:
+    """How many of the slowest targets, and of others, lie at an edge.
+
+    So that poses around have answers, and others have none.
+    """
+    slowest = sorted(slow, key=lambda call: -float(call["again_us"]))[: len(others)]
+    return {
+        "looked": len(slowest),
+        "slow": sum(is_at_edge(solver, call["pose"]) for call in slowest),
+        "others": sum(is_at_edge(solver, pose) for pose in others[: len(slowest)]),
+    }
+
+
+def is_at_edge(solver: iksel.Solver, pose: Array) -> bool:
+    """Whether some of the poses around have an answer, and some have none."""
+    return len({solver.solve(each).success for each in poses_around(pose, 0)}) > 1
 
 
 def poses_around(pose: Array, seed: int) -> Array:

@@ -48,6 +48,8 @@ def test_least_times_are_not_longer(kind, monkeypatch):
         assert values == sorted(values)
     assert cell["least"]["max_us"] <= cell["came"]["max_us"]
     assert cell["slowest"][0]["us"] == cell["came"]["max_us"]
+    assert cell["edges"]["looked"] == slowest.EDGES
+    assert 0 <= cell["edges"]["others"] <= slowest.EDGES
     assert len(cell["slowest"]) == len(cell["slowest_again"]) == slowest.SHOWN
 
 
@@ -101,6 +103,22 @@ def test_poses_around_are_that_far():
     assert np.abs(angles - slowest.AROUND_RAD).max() < 1e-7
 
 
+def test_an_edge_has_answers_on_one_side():
+    """Between well inside and far beyond there is one, where a line leaves it."""
+    robot = iksel.load_robot("ur3")
+    solver = iksel.Solver(robot)
+    inside = robot.fk([0.3, -1.2, 1.4, 0.5, 1.1, 0.2])
+    beyond = inside.copy()
+    beyond[0, 3] += 1.0
+    last, first = inside.copy(), beyond.copy()
+    for _ in range(20):
+        middle = (last + first) / 2.0
+        last, first = (middle, first) if solver.solve(middle) else (last, middle)
+    assert slowest.is_at_edge(solver, last)
+    assert not slowest.is_at_edge(solver, inside)
+    assert not slowest.is_at_edge(solver, beyond)
+
+
 @pytest.mark.parametrize(
     ("stretch", "answers"), [(0.0, slowest.AROUND), (1.0, 0)], ids=["inside", "beyond"]
 )
@@ -134,6 +152,7 @@ def test_the_headline_names_the_worst():
                 "by_machine": 1,
                 "slowest": [call(came, least, 1)],
                 "slowest_again": [call(least, least, 2)],
+                "edges": {"looked": 50, "slow": 40, "others": 1},
                 "stages": [0.1, 0.2, 0.3],
             },
         }
@@ -144,6 +163,7 @@ def test_the_headline_names_the_worst():
     assert "slowest call took 800 µs (`ur3`, by the machine)" in text
     assert "slowest by its target 600 µs (`panda`, 75 % of it in iterations" in text
     assert "at the edge of what has answers (7 of 20 poses around have)" in text
+    assert "Of the 100 targets that are the slowest by themselves 80 % lie" in text
     assert "reachable" not in text
     assert slowest_section.headline(View({"size": vars(QUICK), "cells": []})) == ""
 

@@ -40,7 +40,7 @@ def _verdict(part: int, whole: int, enough: float) -> str:
         else "missed"
     )
     proven = share_text(part, whole)
-    return f"{percent(part, whole)} ({proven}; {enough} aimed at: {word})"
+    return f"{percent(part, whole)} % ({proven}; {enough} % aimed at: {word})"
 
 
 def _moves(view: View) -> list[str]:
@@ -96,7 +96,7 @@ def _restarts(view: View) -> list[str]:
             )
         lines.append(
             f"- `{robot}`, {count:,} poses, {cell['branches']:,} branches: none of "
-            f"{branches.RESTARTS:,} random restarts' is lacking in {complete} %; "
+            f"{branches.RESTARTS:,} random restarts' is lacking in {complete}; "
             f"{added}; wrong or the same twice {cell['wrong']:,}; mean "
             f"{microseconds(cell['mean_us'])} µs."
         )

@@ -56,7 +56,7 @@ Args:
   def(m, "stage_times", "solver, pose", fn<&stage_times>,
       "Where the time of one solve of a pose goes [us]: finding seeds or what is known of the "
       "solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again "
-      "(reselect_us). Which arm needs what: Evaluation has the means of many.");
+      "(reselect_us). Evaluation has the means of many.");
   def(m, "time_kdl_fk_jacobian", "robot", fn<&time_kdl>);
   def(m, "simd_level", "", [] { return std::string(simd_level()); });
 }

@@ -3020,7 +3020,7 @@ def simd_level() -> str:
     """
 def stage_times(solver: Solver, pose: numpy.typing.ArrayLike | typing.Any) -> dict[str, float]:
     """
-    Where the time of one solve of a pose goes [us]: finding seeds or what is known of the solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again (reselect_us). Which arm needs what: Evaluation has the means of many.
+    Where the time of one solve of a pose goes [us]: finding seeds or what is known of the solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again (reselect_us). Evaluation has the means of many.
     """
 def time_kdl_fk_jacobian(robot: Robot) -> float:
     """

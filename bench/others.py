@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-LOOK_S = 0.2
+LOOK_S = 0.1
 """Time over which the machine is looked at [s]."""
 LITTLE = 0.25
 """Cores that others may take without being waited for."""

@@ -33,7 +33,7 @@ class Size:
     """Poses in a batch."""
     artefact: int
     """Queries looked at for singular samples."""
-    patience_s: float = 60.0
+    patience_s: float = 30.0
     """Time that a report waits for other processes to be through, in all [s]."""
     requests: int = 10_000
     """Targets of the requests."""

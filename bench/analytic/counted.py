@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from bench.store import Settings
     from bench.targets import Targets
 
-CHOSEN_BY = 100
+CHOSEN_BY = 50
 """Targets by which a number of samples is chosen."""
 MOST_SAMPLES = 4_096
 """No more are tried."""

@@ -85,6 +85,18 @@ def load_text(some_facts: dict[str, Any]) -> str:
     return "" if load is None else f", load average {load:g} of 15 minutes"
 
 
+def others_text(some_facts: dict[str, Any]) -> str:
+    """What other processes took, as bench.others saw it; "" where that is not known."""
+    facts = some_facts.get("others")
+    if not facts:
+        return ""
+    return (
+        f" Beside the timed jobs other processes took {facts['mean']:g} cores in the "
+        f"mean, {facts['most']:g} at most ({facts['job']}); it had waited for them for "
+        f"{facts['waited_s']:g} s."
+    )
+
+
 def cpu_name() -> str:
     """The processor as the system calls it."""
     try:

@@ -93,15 +93,3 @@ def _cores(seconds: float) -> float:
     time.sleep(seconds)
     after = busy_s()
     return 0.0 if before is None or after is None else (after - before) / seconds
-
-
-def told(machine: dict[str, Any]) -> str:
-    """A sentence of what a report's facts know of others; "" where they do not."""
-    facts = machine.get("others")
-    if not facts:
-        return ""
-    return (
-        f" Beside the timed jobs other processes took {facts['mean']:g} cores in the "
-        f"mean, {facts['most']:g} at most ({facts['job']}); it had waited for them for "
-        f"{facts['waited_s']:g} s."
-    )

@@ -9,7 +9,7 @@ import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from bench import machine, others, provenance
+from bench import machine, provenance
 from bench.plots import draw_all
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.rivals.base import UnsupportedError
@@ -183,8 +183,9 @@ def _made(part: dict[str, Any]) -> str:
         f"there already not counted), with IKSel {facts['iksel']} (lanes: "
         f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
         f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
-        f"{facts['system']}{machine.load_text(facts)}.{others.told(facts)} Times move "
-        "from machine to machine; what is compared here was timed in the same run."
+        f"{facts['system']}{machine.load_text(facts)}."
+        f"{machine.others_text(facts)} Times move from machine to machine; what is "
+        "compared here was timed in the same run."
     )
 
 

@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from bench.store import Settings
     from bench.targets import Targets
 
-CHOSEN_BY = 50
+CHOSEN_BY = 200
 """Targets by which a number of samples is chosen."""
-MOST_SAMPLES = 4_096
-"""No more are tried."""
+ROUNDS = 4
+"""Numbers that are tried for it."""
 
 
 def counted(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     """Time and right answers of each number that is asked for.
 
-    Where a solver takes a number of samples, it is the least that gives as many right
+    Where a solver takes a number of samples, it is one that gives about as many right
     answers in the mean.
     """
     rival = ENUMERATORS[settings["rival"]](arm)
@@ -58,25 +58,18 @@ def _figures(given: Given, number: int) -> dict[str, Any]:
 
 
 def _samples(this: Asked, arm: Arm, wanted: int) -> int:
-    """The least number of samples whose right answers are as many in the mean."""
+    """The number of samples whose right answers are about as many in the mean."""
     few = this.goals.first(CHOSEN_BY)
     this = replace(this, goals=few, near=this.near[:CHOSEN_BY])
-
-    def is_enough(samples: int) -> bool:
+    samples = wanted
+    for _ in range(ROUNDS):
         request = this.rival.so_many(arm, samples)
         given = [
             request.answers(request.call(*request.prepare(pose, near)))
             for pose, near in zip(few.poses, this.near, strict=True)
         ]
         right, _ = judged_answers(this, "every", given)
-        return sum(len(distinct(q)) for q in right) >= wanted * len(few)
-
-    most = wanted
-    while not is_enough(most) and most < MOST_SAMPLES:
-        most *= 2
-    # One less than the least lies in [least, most).
-    least = 0
-    while most - least > 1:
-        middle = (least + most) // 2
-        least, most = (least, middle) if is_enough(middle) else (middle, most)
-    return most
+        found = sum(len(distinct(q)) for q in right)
+        # Answers come in proportion to samples, but for where none were.
+        samples = round(samples * wanted * len(few) / max(found, 1))
+    return samples

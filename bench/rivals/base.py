@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from bench.timing import PASSES, least_times, time_calls
+from bench.timing import PASSES, SHORT_S, least_times, time_calls
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -16,10 +16,6 @@ if TYPE_CHECKING:
     from bench.arms import Arm
     from bench.chain import Array
     from bench.targets import Targets
-
-
-SHORT_S = 0.25
-"""A solver that is through its targets sooner goes through them again [s]."""
 
 
 class UnsupportedError(Exception):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from bench.analytic.counted import CHOSEN_BY
 from bench.analytic.plan import COUNTED, NUMBERS, counted_cell
 from bench.branches import APART
 from bench.markdown import NONE, mean_median, microseconds, table
@@ -61,8 +62,8 @@ def _conditions() -> str:
     numbers = " and ".join(map(str, NUMBERS))
     return (
         f"Reachable targets, asked for {numbers} answers: {OURS}'s `max`, ssik's "
-        f"`max_solutions`; {' and '.join(sampled)} get the least number of samples, in "
-        "brackets, that gives as many right answers in the mean of the first targets. "
+        f"`max_solutions`; {' and '.join(sampled)} get the number of samples, in "
+        f"brackets, that gives about as many right answers to {CHOSEN_BY} of them. "
         "Mean (median) of each call. *Right answers*: in the mean, those that are "
         f"{APART:g} rad apart in some joint. *Fewer, none*: targets with fewer than "
         "were asked for, and with none."

@@ -12,10 +12,9 @@ from bench.markdown import NONE, microseconds, percent, table
 from bench.plans.rivals import rival_cell, rival_count
 from bench.plans.shared import BESIDE_LEVEL, at_level
 from bench.rivals import RIVALS
-from bench.rivals.base import SHORT_S
 from bench.sections import batches
 from bench.size import SEED
-from bench.timing import PASSES
+from bench.timing import PASSES, SHORT_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -80,13 +79,12 @@ def _conditions(view: View) -> str:
         f"{SEED} ({shares}), the same for all; one after another in one process per "
         "solver, on one thread where the solver lets us choose; times are of each "
         "call, failures included, and from Python unless the table of settings says "
-        f"C++; of solvers that are through their targets in {SHORT_S:g} s the least of "
-        f"{PASSES} passes of each call. An answer is right if bench's own forward "
-        f"kinematics is within {POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad "
-        "of the target and it lies inside the limits (of an analytic solver's "
-        "branches, one has to be). Solvers that need a start all get the same random "
-        "one. Their tolerances are set so that their answers can pass: some defaults "
-        "are of a squared error."
+        "C++. An answer is right if bench's own forward kinematics is within "
+        f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the target and "
+        "it lies inside the limits (of an analytic solver's branches, one has to "
+        "be). Solvers that need a start all get the same random one. Their "
+        "tolerances are set so that their answers can pass: some defaults are of a "
+        "squared error."
     )
 
 
@@ -116,7 +114,11 @@ def _times(view: View, kind: str) -> str:
     def show(cell: dict[str, Any]) -> str:
         return f"{microseconds(cell['mean_us'])} ({microseconds(cell['p99_us'])})"
 
-    return table(_header("solver"), _cells(view, kind, show))
+    note = (
+        f"Of each call the least time of {PASSES} passes, where the first takes less "
+        f"than {SHORT_S:g} s."
+    )
+    return table(_header("solver"), _cells(view, kind, show)) + "\n\n" + note
 
 
 def _rights(view: View, kind: str) -> str:

@@ -11,7 +11,7 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import others, report, run
+from bench import machine, others, report, run
 from bench.size import FULL, QUICK, Job
 from bench.store import Store
 
@@ -92,12 +92,12 @@ def test_a_report_waits_before_what_it_measures_only(monkeypatch, tmp_path):
 
 def test_the_report_says_it():
     facts = {"mean": 0.03, "most": 0.9, "job": "IKSel", "waited_s": 12}
-    told = others.told({"others": facts})
+    told = machine.others_text({"others": facts})
     assert "took 0.03 cores in the mean, 0.9 at most (IKSel); it had waited" in told
-    assert others.told({}) == others.told({"others": {}}) == ""
+    assert machine.others_text({}) == machine.others_text({"others": {}}) == ""
     assert FULL.patience_s > QUICK.patience_s == 0.0
-    machine = dict.fromkeys(
+    made_on = dict.fromkeys(
         ("iksel", "simd", "commit", "python", "numpy", "cpu", "system"), "x"
     ) | {"cores": 2, "others": facts}
-    part = {"machine": machine, "command": "it", "seconds": 1}
+    part = {"machine": made_on, "command": "it", "seconds": 1}
     assert told in report._made(part)

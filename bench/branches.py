@@ -13,6 +13,7 @@ import numpy as np
 
 import iksel
 from bench.check import LIMIT_SLACK, right
+from bench.nearby import RIGHT, is_least_nearby
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.timing import PASSES, least_times, time_calls
@@ -215,6 +216,8 @@ def near_branches(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any
         ]
     )
     solvable = np.array([len(branches) > 0 for branches in truth])
+    longer = [int(i) for i in np.flatnonzero(excess > SAME_MOVE)]
+    redundant = [i for i in longer if results[i].success and chain.dof > RIGHT]
     return {
         "count": len(goals),
         "solvable": int(solvable.sum()),
@@ -224,7 +227,13 @@ def near_branches(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any
         "shorter": int(np.count_nonzero(excess < -SAME_MOVE)),
         "mean_us": float(times.mean()) / 1e3,
         "p99_us": float(np.quantile(times, 0.99)) / 1e3,
-        "missed": [int(i) for i in np.flatnonzero(excess > SAME_MOVE)[:SHOWN]],
+        "missed": longer[:SHOWN],
+        # What keeps a redundant arm's move from being the least: another valley.
+        "looked_around": len(redundant[:SHOWN]),
+        "least_nearby": sum(
+            is_least_nearby(arm, goals.poses[i], near[i], results[i].q)
+            for i in redundant[:SHOWN]
+        ),
     }
 
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 MOVING = ("revolute", "continuous", "prismatic")
+WIDE = 20.0 * np.pi
+"""What stands for no limit in programs that ask for one [rad]."""
 
 
 @dataclass(frozen=True)
@@ -155,6 +157,15 @@ def chain_from_urdf(urdf: str, base_link: str, tip_link: str, tcp: Array) -> Cha
         np.array(lower),
         np.array(upper),
     )
+
+
+def give_wide_limits(joint: ET.Element) -> None:
+    """Make a continuous joint one with wide limits, where these cannot be missing."""
+    joint.attrib["type"] = "revolute"
+    for limit in joint.findall("limit"):
+        joint.remove(limit)
+    ends = {"lower": repr(float(-WIDE)), "upper": repr(float(WIDE))}
+    ET.SubElement(joint, "limit", ends, effort="1", velocity="1")
 
 
 def _numbers(

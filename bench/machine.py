@@ -30,6 +30,7 @@ MEASURING = (
     "timing.py",
     "lost.py",
     "moves.py",
+    "nearby.py",
     "random_arms.py",
     "random_builds.py",
     "cold.py",

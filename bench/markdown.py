@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -16,6 +17,30 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A table; columns after the first are aligned right."""
     lines = [list(header), ["---", *["---:"] * (len(header) - 1)], *map(list, rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def anchor(title: str) -> str:
+    """What GitHub and MyST call a heading in links."""
+    kept = re.sub(r"[^\w\- ]", "", title.strip().lower())
+    return kept.replace(" ", "-")
+
+
+def contents(text: str) -> str:
+    """A list of links to the sections of a text."""
+    titles = [line[3:] for line in text.splitlines() if line.startswith("## ")]
+    return bullets(f"[{title}](#{anchor(title)})" for title in titles)
+
+
+def bullets(lines: Iterable[str]) -> str:
+    """A list."""
+    return "\n".join(f"- {line}" for line in lines)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: a, b and c, or "none"; semicolons where they have commas."""
+    *first, last = names or ["none"]
+    between = "; " if any("," in name for name in names) else ", "
+    return f"{between.join(first)} and {last}" if first else last
 
 
 def microseconds(value: float | None) -> str:

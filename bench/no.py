@@ -54,13 +54,15 @@ def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     # At the tolerances of the default preset: what is right to the judge alone would be
     # no answer of IKSel's.
     exact = _exact(arm.chain, goals.poses, claims)
-    proven = np.array([result.proven for result in ours])
+    proven = np.array([result.proven for result in ours], dtype=bool)
     result = {
         "count": len(goals),
         "yes": int(verdict.right.sum()),
         "false": verdict.false_claims,
         "missed": int(np.count_nonzero(~verdict.right & (solved | known))),
         "only": int(np.count_nonzero(exact & ~solved)),
+        # Proofs that this solver's answers could have refuted, and those that they did.
+        "proofs": int(np.count_nonzero(proven)),
         "disproved": int(np.count_nonzero(proven & (exact | known))),
         "yes_us": mean_median(times[verdict.claimed]),
         "no_us": mean_median(times[~verdict.claimed]),
@@ -71,6 +73,7 @@ def answered(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
             pose for pose, given in zip(goals.poses, ours, strict=True) if not given
         ]
         result["proven_us"] = mean_median(_time_proofs(solver, noes))
+        result["proven_unasked"] = sum(solver.solve(pose).proven for pose in noes)
     return result
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from bench.machine import MEASURING, UNKNOWN, git
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from bench.view import Report
 
 SOURCES = (
@@ -28,19 +30,39 @@ class ProvenanceError(Exception):
 
 def check(report: Report) -> None:
     """Raise ProvenanceError unless every part of a report is of the sources here."""
+    if found := reasons(report, doubts):
+        raise ProvenanceError("; ".join(found))
+
+
+def reasons(report: Report, of: Callable[[dict[str, Any]], list[str]]) -> list[str]:
+    """What `doubts` or `unfit` say of every part of a report."""
     parts = {"the report": report}
     parts |= {f"section {name}": part for name, part in report.get("parts", {}).items()}
-    reasons = [
+    return [
         f"{name}: {reason}"
         for name, part in parts.items()
-        for reason in doubts(part["machine"])
+        for reason in of(part["machine"])
     ]
-    if reasons:
-        raise ProvenanceError("; ".join(reasons))
 
 
 def doubts(facts: dict[str, Any]) -> list[str]:
     """Why figures with these facts of bench.machine are not of the sources here."""
+    found = unfit(facts)
+    commit = str(facts.get("commit", UNKNOWN)).rstrip("+")
+    if commit == UNKNOWN:
+        return found
+    if not git("cat-file", "-t", commit):
+        return [*found, f"made at commit {commit}, which is not in this repository"]
+    changed = git("diff", "--name-only", commit, "--", *SOURCES).splitlines()
+    if changed:
+        more = len(changed) - SHOWN
+        names = ", ".join(changed[:SHOWN]) + (f" and {more} more" if more > 0 else "")
+        found.append(f"changed since its commit {commit}: {names}")
+    return found
+
+
+def unfit(facts: dict[str, Any]) -> list[str]:
+    """Why figures are of no sources at all: they can never have been published."""
     commit = str(facts.get("commit", UNKNOWN))
     if commit == UNKNOWN:
         return ["made at an unknown commit"]
@@ -49,12 +71,4 @@ def doubts(facts: dict[str, Any]) -> list[str]:
         found.append(f"made of a tree that differs from its commit {commit[:-1]}")
     if facts.get("stale"):
         found.append("made by an IKSel that is older than its sources")
-    commit = commit.rstrip("+")
-    if not git("cat-file", "-t", commit):
-        return [*found, f"made at commit {commit}, which is not in this repository"]
-    changed = git("diff", "--name-only", commit, "--", *SOURCES).splitlines()
-    if changed:
-        more = len(changed) - SHOWN
-        names = ", ".join(changed[:SHOWN]) + (f" and {more} more" if more > 0 else "")
-        found.append(f"changed since its commit {commit}: {names}")
     return found

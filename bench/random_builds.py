@@ -46,7 +46,7 @@ APART = 1_000_003
 SUMS = (
     *("targets", "lost", "false"),
     *("yes", "yes_ns", "noes", "no_ns", "proven", "swept"),
-    *("tried", "found", "refuted"),
+    *("tried", "tried_proofs", "found", "refuted"),
     *("moves", "longer"),
 )
 """What is counted of each arm, and added up."""
@@ -185,6 +185,7 @@ def _restarted(
         seeds = solver.robot.random_configurations(RESTARTS, seed + i)
         found = patient.solve(pose, seeds=seeds, database_seeds=False).success
         row["tried"] += 1
+        row["tried_proofs"] += proven
         row["found"] += found
         row["refuted"] += found and proven
 

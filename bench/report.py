@@ -10,10 +10,12 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from bench import machine, provenance
+from bench.markdown import contents
 from bench.plots import draw_all
 from bench.rivals import ENUMERATORS, RIVALS
 from bench.rivals.base import UnsupportedError
 from bench.sections import (
+    absent,
     analytic,
     ikgeo,
     learned,
@@ -40,6 +42,15 @@ if TYPE_CHECKING:
 
 PLOTTED = "uniform"
 """Targets whose distributions are kept for the plots."""
+
+ORIGIN = (
+    "Generated. Figures are of the runs named here, but for those that the text calls "
+    "published, and rows that say to be of another run. *Proven* is what IKSel says of "
+    "its own no; *brute force* is made of IKSel's own calls: its iteration from many "
+    "seeds, all that `solve_all` gives, `self_motion` from end to end. Where another "
+    "solver's answers are held against IKSel's, that solver is named."
+)
+"""Where figures come from, and whose word the words are."""
 
 DIGITS = 6
 """Significant digits of the figures that are kept."""
@@ -137,10 +148,10 @@ def render(report: Report, folder: Path) -> None:
     text = "\n\n".join(
         part
         for part in (
-            _head(report),
             rivals.text(view),
             no.text(view),
             analytic.text(view),
+            absent.text(view),
             random_builds.text(view),
             tails.text(view),
             paper.text(view),
@@ -153,6 +164,7 @@ def render(report: Report, folder: Path) -> None:
         )
         if part
     )
+    text = "\n\n".join([_head(report), contents(text), text])
     drawn = draw_all(view, folder / "plots")
     text = "\n".join(
         line
@@ -171,8 +183,7 @@ def _head(report: Report) -> str:
     doubts = provenance.doubts(report["machine"])
     if doubts:
         lines.insert(0, f"**Not to be published**: {'; '.join(doubts)}.")
-    title = "# Results\n\nGenerated; nothing in here is written by hand."
-    return "\n\n".join([title, *lines])
+    return "\n\n".join(["# Results", ORIGIN, *lines])
 
 
 def _made(part: dict[str, Any]) -> str:

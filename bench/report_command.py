@@ -23,7 +23,7 @@ from bench.report import (
     render,
     save_report,
 )
-from bench.rivals import RIVALS
+from bench.rivals import ENUMERATORS, RIVALS
 from bench.run import run_jobs
 from bench.settings import WORK
 from bench.size import FULL, QUICK
@@ -37,9 +37,12 @@ if TYPE_CHECKING:
 
 BENCH = Path(__file__).resolve().parent
 
+SOLVERS = list(dict.fromkeys([*RIVALS, *ENUMERATORS]))
+"""All that a section asks, each once."""
+
 EPILOG = f"""\
 robots: {", ".join(RIVAL_ARMS)} (and, with --only robots, every built-in one)
-solvers: {", ".join(repr(name) for name in RIVALS)}
+solvers: {", ".join(repr(name) for name in SOLVERS)}
 
 An interrupted report goes on where it was when it is started again: results are kept
 in build/bench by what was measured, on what and with what.
@@ -61,7 +64,7 @@ def add(commands: Any) -> None:
         "--only",
         nargs="+",
         metavar="PART",
-        choices=[*plan.SECTIONS, *RIVALS],
+        choices=[*plan.SECTIONS, *SOLVERS],
         help=f"only these sections ({', '.join(plan.SECTIONS)}) or solvers",
     )
     report.add_argument(

@@ -25,6 +25,8 @@ from bench.rivals.ssik import Ssik, SsikWithoutRescue
 from bench.rivals.tracik import TracIk
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from bench.rivals.base import Rival
     from bench.rivals.enumerator import Enumerator
 
@@ -48,6 +50,12 @@ RIVALS: dict[str, type[Rival]] = {
     )
 }
 """All of them by name, in the order of the tables."""
+
+
+def timed_in_cpp(names: Iterable[str]) -> list[str]:
+    """Those whose calls are timed inside C++, and so without Python's part."""
+    return [name for name in names if "C++" in RIVALS[name].measured]
+
 
 ENUMERATORS: dict[str, type[Enumerator]] = {
     rival.name: rival

@@ -122,7 +122,10 @@ def fit_frames(arm: Arm, fk: Callable[[Array], Array]) -> Frames:
     frames = Frames(base, tool)
     off = _largest_difference(chain, fk, frames)
     if not off <= EXACT:
-        raise UnsupportedError(f"{arm.name} is no such arm: off by {off:.1g}")
+        raise UnsupportedError(
+            f"{arm.name} is no such arm: poses are off by {off:.1g} (m, or elements of "
+            "the rotation)"
+        )
     return frames
 
 

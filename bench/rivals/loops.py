@@ -8,11 +8,12 @@ repeats that. A loop that does not arrive starts anew at random.
 from __future__ import annotations
 
 import itertools
+import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from bench.rivals.base import UnsupportedError
+from bench.chain import WIDE, give_wide_limits
 from bench.rivals.enumerator import Enumerator, Request
 from bench.rivals.frame_tasks import SETTINGS, FrameTasks, MinkTasks, PinkTasks
 
@@ -25,8 +26,18 @@ STARTS = 20
 TOLERANCE = 1e-6
 LOOP = (
     f"one frame task of costs 1, {SETTINGS}, {ITERATIONS} steps, {STARTS} starts, "
-    f"{TOLERANCE:g} m and rad"
+    f"{TOLERANCE:g} m and rad; continuous joints have limits of {WIDE / np.pi:.0f} pi "
+    "to each side"
 )
+
+
+def limited(urdf: str) -> str:
+    """A chain's URDF in which every joint that turns has limits."""
+    root = ET.fromstring(urdf)
+    for joint in root.findall("joint"):
+        if joint.attrib["type"] == "continuous":
+            give_wide_limits(joint)
+    return ET.tostring(root, encoding="unicode")
 
 
 class Loop(Enumerator):
@@ -39,12 +50,12 @@ class Loop(Enumerator):
     def ways(self, arm: Arm) -> dict[str, Request]:
         """One from a random start; the nearest from the posture."""
         chain = arm.chain
-        if not np.isfinite(chain.upper - chain.lower).all():
-            raise UnsupportedError("the adapter has no continuous joints")
         random = np.random.default_rng(1)
-        starts = random.uniform(chain.lower, chain.upper, (1_000, chain.dof))
+        lower = np.where(np.isfinite(chain.lower), chain.lower, -np.pi)
+        upper = np.where(np.isfinite(chain.upper), chain.upper, np.pi)
+        starts = random.uniform(lower, upper, (1_000, chain.dof))
         following = itertools.cycle(starts)
-        tasks = self.of_package(arm.urdf, [arm.tip_link])
+        tasks = self.of_package(limited(arm.urdf), [arm.tip_link])
 
         def prepare(pose: Array, near: Array) -> tuple[Any, ...]:
             del near

@@ -112,11 +112,17 @@ def _figures(view: View) -> list[str]:
     if not rows:
         return []
     shown = ", ".join(map(str, SHOWN_REA))
+    last = SHOWN_REA[-1]
+    note = (
+        f"At #ReA {last} all {last + 1} seeds that are selected among have been tried: "
+        f'the tables\' "#ReA {last + 1}" is the same.'
+    )
     return [
         "### The two figures",
         "![Success and mean time over #ReA](plots/paper_attempts.svg)",
         "![Mean and standard deviation of the time](plots/paper_times.svg)",
         table([f"success % at #ReA {shown}", *HEADER], rows),
+        note,
         *_beside_figures(view),
     ]
 

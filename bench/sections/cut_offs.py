@@ -31,7 +31,9 @@ def text(view: View) -> str:
             for robot in RIVAL_ARMS
         ]
         if any(cells) and name not in PROVING:
-            rows.append([name, *(NONE if c is None else enough(c) for c in cells)])
+            counts = sorted({f"{cell['count']:,}" for cell in cells if cell})
+            shown = (NONE if cell is None else enough(cell) for cell in cells)
+            rows.append([f"{name} ({' to '.join(counts)})", *shown])
     what = (
         "A numerical rival proves nothing: its no is the cut-off that the bench gives "
         "it, a time or a number of starts (the settings of the rivals say which)."
@@ -40,16 +42,26 @@ def text(view: View) -> str:
         return what
     least = (
         f"With this cut-off, in µs a call, it would still solve {100 * ENOUGH:.1f} % "
-        "of the reachable targets of the rivals' section; *never*: it does not at all:"
+        "of the reachable targets of the rivals' section, in brackets how many these "
+        "are; *never*: it solves no more than that share of them, however long it may "
+        "take within the bench's own cut-off:"
     )
     header = ["solver", *(f"`{robot}`" for robot in RIVAL_ARMS)]
     return "\n\n".join([f"{what} {least}", table(header, rows)])
 
 
 def enough(cell: dict[str, Any]) -> str:
-    """The time by which ENOUGH of a cell's targets have their right answer."""
-    if cell["right"] < ENOUGH * cell["count"]:
+    """The least cut-off that leaves ENOUGH, or how much there is without one."""
+    least = least_cut_off(cell)
+    if least is None:
         return f"never ({percent(cell['right'], cell['count'])} %)"
+    return microseconds(least)
+
+
+def least_cut_off(cell: dict[str, Any]) -> float | None:
+    """The time [us] by which ENOUGH of a cell's targets have their right answer."""
+    if cell["right"] < ENOUGH * cell["count"]:
+        return None
     # The quantiles are of the right answers' times alone.
     part = ENOUGH * cell["count"] / cell["right"]
-    return microseconds(float(np.interp(part, QUANTILES, cell["right_quantiles_us"])))
+    return float(np.interp(part, QUANTILES, cell["right_quantiles_us"]))

@@ -134,7 +134,7 @@ def _papers(view: View, robot: str) -> dict[str, Any] | None:
 
 def _verdict(view: View) -> str:
     """How far the paper's search is from the published rates."""
-    found, far = [], []
+    found, least, most = [], [], []
     for robot in seeding.IK_GEO_ARMS:
         cell = _papers(view, robot)
         if cell is None:
@@ -146,13 +146,20 @@ def _verdict(view: View) -> str:
             found.append(
                 f"{PAPER_ARMS[robot]} {how} {signed(difference)} ± {bound:.2f}"
             )
-            far.append(abs(difference) + bound)
+            least.append(abs(difference) - bound)
+            most.append(abs(difference) + bound)
     if not found:
         return ""
-    word = "holds" if max(far) <= POINTS else "missed"
+    word = (
+        "holds"
+        if max(most) <= POINTS
+        else "missed"
+        if max(least) > POINTS
+        else "undecided: the bounds cross it"
+    )
     return (
         f"The first of these rows against the published rates, in points: "
-        f"{', '.join(found)} (within {POINTS:g} aimed at: {word})."
+        f"{', '.join(found)} (within {POINTS:g} points aimed at: {word})."
     )
 
 

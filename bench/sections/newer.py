@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from bench.arguments import add_count, add_kept
-from bench.markdown import NONE, microseconds, table
+from bench.markdown import NONE, bullets, microseconds, table
 from bench.paper import plan, published
 from bench.sections.ablations import HEADER, ROBOTS
 from bench.settings import command_line
@@ -41,25 +41,46 @@ def text(view: View) -> str:
     ]
     numpy = cells[0][3]["count"]
     run = [f"{rate:.2f}; {NONE}, {n:.2f}, {NONE}" for rate, n in published.NEWER_RUN]
-    rows.append(["the authors' code, on 5,000 of the targets", *run])
+    asked = f"{published.NEWER_TARGETS:,} targets"
+    rows.append([f"the authors' code, {asked}; not of this run, see above", *run])
     header = ["success %; mean time, attempts, steps", *HEADER]
+    count = cells[0][0]["count"]
     about = (
-        "`SolverOptions.paper(2026)` is what the authors' later repository, "
-        "[wanweiwei07/one](https://github.com/wanweiwei07/one) at commit "
-        f"{published.NEWER_COMMIT}, does: 2,048 samples by k-means of 200,000 random "
-        "configurations, of the 200 nearest the 16 best by Eq. (5) in that order, 12 "
-        "configurations each, clamps of 0.1 m and 0.3 rad, truncated least squares, "
-        "seven joints towards the middle of their limits in the null space. It means "
-        "to give up when the error grows, but never writes the variable that it "
-        "compares with; so there is no such stop. It tests its tolerances at the "
-        "flange, and `paper(2026)` at the TCP. The row in numpy is written from that "
-        f"description (`bench/paper/newer.py`), over {numpy:,} targets. The "
-        "repository states no rate, and as time "
-        f"{published.NEWER_MS:.0f} ms in Python. One row by itself: "
-        f"`{command_line(cells[0][1])}`; this table: `python -m bench paper2026`."
+        (
+            "`SolverOptions.paper(2026)` is what the authors' later repository, "
+            "[wanweiwei07/one](https://github.com/wanweiwei07/one) at commit "
+            f"{published.NEWER_COMMIT}, does: 2,048 samples by k-means of 200,000 "
+            "random configurations, of the 200 nearest the 16 best by Eq. (5) in that "
+            "order, 12 configurations each, clamps of 0.1 m and 0.3 rad, truncated "
+            "least squares, seven joints towards the middle of their limits in the "
+            "null space."
+        ),
+        (
+            "It means to give up when the error grows, but never writes the variable "
+            "that it compares with; so there is no such stop. It tests its tolerances "
+            "at the flange, and `paper(2026)` at the TCP."
+        ),
+        (
+            f"Targets: {count:,} per robot, uniform in the limits, seed 1; for the row "
+            "in numpy, which is written from that description "
+            f"(`bench/paper/newer.py`), the first {numpy:,}."
+        ),
+        (
+            f"The last row is that code itself on the first {asked}, run once by hand "
+            f"in {published.NEWER_WHEN} (`NEWER_RUN` of `bench/paper/published.py`)."
+        ),
+        (
+            "The repository states no rate. All that it says of time is the title of "
+            f'a commit, "{published.NEWER_TITLE}": {published.NEWER_MS:.0f} ms in '
+            "Python, on which robot and machine it does not say."
+        ),
+        (
+            f"One row by itself: `{command_line(cells[0][1])}`; this table: `python -m "
+            "bench paper2026`."
+        ),
     )
     title = "### The authors' newer selection"
-    return "\n\n".join([title, about, table(header, rows)])
+    return "\n\n".join([title, bullets(about), table(header, rows)])
 
 
 def _shown(cell: dict[str, Any] | None) -> str:

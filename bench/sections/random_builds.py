@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench import random_arms
 from bench.arguments import add_count, add_kept, add_names, add_seed
-from bench.markdown import NONE, microseconds, percent, table
+from bench.markdown import NONE, bullets, microseconds, percent, table
 from bench.moves import LONGER
 from bench.random_builds import RESTARTS, random_cell, random_jobs
 from bench.size import FULL, QUICK
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 SUMMED = (
     *("arms", "targets", "lost", "false", "noes", "proven", "swept"),
-    *("tried", "found", "refuted", "moves", "longer"),
+    *("tried", "found", "tried_proofs", "refuted", "moves", "longer"),
 )
 HEADER = (
     *("build", "arms", "targets", "lost", "false", "no: all", "proven %", "by sweep %"),
-    *("of some, answered by restarts", "refuted proofs", "yes µs", "no µs"),
+    *("neither %", "noes tried: answered", "proofs tried: refuted", "yes µs", "no µs"),
     *("`near`: moves", "longer"),
 )
 
@@ -61,33 +61,61 @@ def found(view: View) -> dict[str, dict[str, Any]]:
 
 def _conditions(view: View) -> str:
     size = view.size
-    return (
-        f"No constant was chosen by these: up to {size.random_arms} arms of each build "
-        f"(`bench/random_arms.py`), seeds from {size.random_seed:,}; none is begun "
-        f"after {size.random_s:g} s of a build. Of each arm "
-        f"{size.random_targets:,} poses of configurations uniform inside the limits in "
-        f"a batch, {size.random_asked:,} others one by one, and {size.random_asked:,} "
-        "reachable positions with rotations at random; default options, tolerances of "
-        "1e-6 m and 1e-6 rad, one thread, from Python; answers judged by bench's own "
-        "forward kinematics. *yes*: mean time of the reachable that are solved, *no* "
-        "of the random rotations that are not, over all arms, the least of three of "
-        f"each. Up to {size.random_brute} noes of each arm are asked again from "
-        f"{RESTARTS} random seeds, and {size.random_brute} moves from any "
-        "configuration are held against brute force: the configuration that the pose "
-        "is of, all of `solve_all`, and the self-motion from end to end, or, where it "
-        f"is none, the restarts. *longer*: by more than {LONGER:g} rad (of a slide m). "
-        "*Refuted*: proven noes that have an answer. Made by itself: `python -m bench "
-        "random`."
+    return bullets(
+        (
+            (
+                f"Arms: up to {size.random_arms} of each build "
+                f"(`bench/random_arms.py`), seeds from {size.random_seed:,}, by which "
+                f"no constant was chosen; none is begun after {size.random_s:g} s of a "
+                "build."
+            ),
+            (
+                f"Targets: of each arm {size.random_targets:,} poses of configurations "
+                f"uniform inside the limits in a batch and {size.random_asked:,} "
+                "others one by one, which can all be reached; and "
+                f"{size.random_asked:,} reachable positions with rotations at random, "
+                "which give the noes."
+            ),
+            (
+                "Default options, tolerances of 1e-6 m and 1e-6 rad, one thread, from "
+                "Python. Answers are judged by bench's own forward kinematics, not by "
+                "IKSel's."
+            ),
+            (
+                "*yes*: mean time of the reachable that are solved, *no* of the random "
+                "rotations that are not, over all arms, the least of three of each."
+            ),
+            (
+                "*Proven*, *by sweep*, *neither*: what IKSel says of its noes. Only "
+                "what is proven is certain."
+            ),
+            (
+                f"*Tried*: up to {size.random_brute} noes of each arm are asked again, "
+                f"of IKSel's own iteration from {RESTARTS} random seeds; no other "
+                "solver is asked. *Proofs tried* are those of them that are proven. "
+                "*Refuted*: proven noes that have an answer, by these restarts or "
+                "because the target can be reached."
+            ),
+            (
+                f"*Moves*: {size.random_brute} of each arm from any configuration, "
+                "held against brute force made of IKSel's own calls: the configuration "
+                "that the pose is of, all of `solve_all`, and `self_motion` from end "
+                "to end, or, where the solutions are no curve, the restarts. *longer*: "
+                f"by more than {LONGER:g} rad (of a slide m)."
+            ),
+            "Made by itself: `python -m bench random`.",
+        )
     )
 
 
 def _columns(cell: dict[str, Any]) -> list[str]:
     noes = cell["noes"]
+    sure = (cell["proven"], cell["swept"])
     return [
         *(f"{cell[what]:,}" for what in ("arms", "targets", "lost", "false", "noes")),
-        *(percent(cell[what], noes, 1) if noes else NONE for what in PROOFS),
-        f"{cell['found']:,} of {cell['tried']:,}",
-        f"{cell['refuted']:,}",
+        *(percent(count, noes, 1) if noes else NONE for count in (*sure, unsure(cell))),
+        f"{cell['tried']:,}: {cell['found']:,}",
+        f"{cell['tried_proofs']:,}: {cell['refuted']:,}",
         microseconds(cell["yes_us"]),
         microseconds(cell["no_us"]),
         f"{cell['moves']:,}",
@@ -95,7 +123,9 @@ def _columns(cell: dict[str, Any]) -> list[str]:
     ]
 
 
-PROOFS = ("proven", "swept")
+def unsure(cell: dict[str, Any]) -> int:
+    """Noes that are neither proven nor swept."""
+    return int(cell["noes"] - cell["proven"] - cell["swept"])
 
 
 def _culprits(cells: dict[str, dict[str, Any]]) -> list[str]:

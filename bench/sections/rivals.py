@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 from bench.arms import RIVAL_ARMS
 from bench.bounds import at_least, share_text
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
-from bench.markdown import NONE, microseconds, percent, table
-from bench.plans.rivals import rival_cell, rival_count
+from bench.markdown import NONE, bullets, listed, microseconds, percent, table
+from bench.plans.rivals import rival_cell
 from bench.plans.shared import BESIDE_LEVEL, at_level
-from bench.rivals import RIVALS
-from bench.sections import batches
+from bench.rivals import RIVALS, timed_in_cpp
+from bench.sections import batches, target_counts
 from bench.size import SEED
 from bench.timing import PASSES, SHORT_S
 
@@ -41,10 +41,11 @@ def text(view: View) -> str:
         return ""
     parts = [
         "## IKSel beside its rivals",
-        _conditions(view),
+        _conditions(),
         "![Share of targets solved over time](plots/success_over_time.svg)",
         "### Random targets: mean (p99) in µs",
         _times(view, "uniform"),
+        target_counts.text(view, "uniform"),
         *_verdicts(view),
         "### Random targets: right answers in percent",
         _rights(view, "uniform"),
@@ -52,12 +53,14 @@ def text(view: View) -> str:
     ]
     for kind, title in KIND_TITLES.items():
         parts += [f"### {title}", _rights_and_times(view, kind)]
+        parts.append(target_counts.text(view, kind))
         if kind == "lines":
             continue
         parts.append(_enough(view, kind))
     parts += [
         "### Out of reach: mean (p99) in µs until a solver says so",
         _times(view, "unreachable"),
+        target_counts.text(view, "unreachable"),
         _unreachable_claims(view),
         "### In batches",
         batches.text(view),
@@ -67,24 +70,38 @@ def text(view: View) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _conditions(view: View) -> str:
-    counts = view.size.rivals
-    shares = ", ".join(
-        f"{name} {rival_count(view.size, name, 'uniform'):,}"
-        for name in RIVALS
-        if rival_count(view.size, name, "uniform") != counts["uniform"]
-    )
-    return (
-        f"{counts['uniform']:,} targets per robot uniform in the joint limits, seed "
-        f"{SEED} ({shares}), the same for all; one after another in one process per "
-        "solver, on one thread where the solver lets us choose; times are of each "
-        "call, failures included, and from Python unless the table of settings says "
-        "C++. An answer is right if bench's own forward kinematics is within "
-        f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the target and "
-        "it lies inside the limits (of an analytic solver's branches, one has to "
-        "be). Solvers that need a start all get the same random one. Their "
-        "tolerances are set so that their answers can pass: some defaults are of a "
-        "squared error."
+TIMES = (
+    "Times are of each call, failures included, from Python, but those of "
+    f"{listed(timed_in_cpp(RIVALS))} in C++."
+)
+"""What a time of this section is of."""
+
+
+def _conditions() -> str:
+    return bullets(
+        (
+            (
+                "Solvers with the same count of targets, which is under each table, "
+                "get the same ones; of fewer, a slow solver gets others by the same "
+                "seed (the first of the random ones, of the singular ones and of the "
+                "lines)."
+            ),
+            (
+                "One after another in one process per solver, on one thread where the "
+                f"solver lets us choose. {TIMES}"
+            ),
+            (
+                "An answer is right if bench's own forward kinematics is within "
+                f"{POSITION_TOLERANCE:g} m and {ROTATION_TOLERANCE:g} rad of the "
+                "target and it lies inside the limits (of an analytic solver's "
+                "branches, one has to be)."
+            ),
+            (
+                "Solvers that need a start all get the same random one. Their "
+                "tolerances are set so that their answers can pass: some defaults are "
+                "of a squared error."
+            ),
+        )
     )
 
 
@@ -227,22 +244,15 @@ def _enough(view: View, kind: str) -> str:
 
 def _unreachable_claims(view: View) -> str:
     claims = []
-    least, most = 0, 0
     for name in RIVALS:
         found = [
             view.get(rival_cell(robot, name, "unreachable", view.size))
             for robot in RIVAL_ARMS
         ]
-        counts = [cell["count"] for cell in found if cell is not None]
-        least = min([*counts, least] if least else counts, default=0)
-        most = max([*counts, most])
         total = sum(cell["claimed"] for cell in found if cell is not None)
         if total:
             claims.append(f"{name} ({total})")
-    targets = (
-        f"Targets farther from the first joint than the arm is long, {least:,} to "
-        f"{most:,} a solver and robot, seed {SEED}. "
-    )
+    targets = "Targets are farther from the first joint than the arm is long. "
     if not claims:
         return targets + "No solver claimed an answer."
     return targets + f"Answers claimed all the same: {', '.join(claims)}."

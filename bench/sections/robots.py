@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from bench.markdown import NONE, microseconds, table
 from bench.plans.robots import all_robots, robot_cell
 from bench.plans.shared import BESIDE_LEVEL, at_level
+from bench.sections import absent
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -55,7 +56,7 @@ def text(view: View) -> str:
         f"{view.size.robots:,} targets per robot, seed 1, 1e-6 m and 1e-6 rad, timed "
         "inside C++ on one thread. *ratio* is the mean over the time of one KDL "
         "forward kinematics plus Jacobian on the same robot in the same run: how "
-        "times compare between machines."
+        f"times compare between machines. {absent.small_robots()}"
     )
     title = "## Every robot, default preset"
     return f"{title}\n\n{conditions}\n\n{table(header, rows)}"

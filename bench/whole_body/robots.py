@@ -6,7 +6,6 @@ from __future__ import annotations
 import copy
 import functools
 import hashlib
-import math
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,7 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 import iksel
-from bench.chain import MOVING, Chain, chain_from_urdf, chain_joints
+from bench.chain import (
+    MOVING,
+    Chain,
+    chain_from_urdf,
+    chain_joints,
+    give_wide_limits,
+)
 from bench.check import right
 from bench.rivals.base import UnsupportedError
 from bench.robot_data import PACKAGE, robots_folder
@@ -190,10 +195,6 @@ def body_of(name: str, urdf: str, base_link: str, tip_links: tuple[str, ...]) ->
     return Body(name, robot, tuple(chains), tuple(columns), text)
 
 
-WIDE = 20.0 * math.pi
-"""What stands for no limit [rad]."""
-
-
 def chains_urdf(urdf: str, base_link: str, tip_links: tuple[str, ...]) -> str:
     """A URDF that has only the joints from the base to the tips.
 
@@ -213,15 +214,6 @@ def chains_urdf(urdf: str, base_link: str, tip_links: tuple[str, ...]) -> str:
             for controller in joint.findall("safety_controller"):
                 joint.remove(controller)
             if joint.attrib["type"] == "continuous":
-                _limit(joint)
+                give_wide_limits(joint)
             root.append(joint)
     return ET.tostring(root, encoding="unicode")
-
-
-def _limit(joint: ET.Element) -> None:
-    """Make a continuous joint one with wide limits."""
-    joint.attrib["type"] = "revolute"
-    for limit in joint.findall("limit"):
-        joint.remove(limit)
-    ends = {"lower": repr(-WIDE), "upper": repr(WIDE)}
-    ET.SubElement(joint, "limit", ends, effort="1", velocity="1")

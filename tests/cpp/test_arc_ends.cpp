@@ -126,4 +126,22 @@ TEST(ArcEnds, RuleOutNothingThatIsThere) {
   }
 }
 
+/// Where the elbow is all but straight, the angles behind it are hardly determined; but nearly all
+/// of what there is lies far outside of the limits.
+TEST(ArcEnds, AlmostStraightElbowsLeaveFewDoubts) {
+  const Robot& robot = iksel_test::robot("valkyrie_right_arm");
+  const Solver& solver = iksel_test::solver("valkyrie_right_arm");
+  iksel_test::Dice dice(iksel_test::seed());
+  int noes = 0;
+  int proven = 0;
+  for (Pose target : iksel_test::random_targets(robot, iksel_test::cases(3000, 3000))) {
+    target.linear() = iksel_test::rotation_of_rpy<double>(dice.vector(3.1));
+    const iksel::Result result = solver.solve(target);
+    noes += !result.success();
+    proven += result.proof == Proof::closed_form;
+  }
+  EXPECT_GT(noes, 1000);
+  EXPECT_GE(proven, noes * 97 / 100) << "seed " << iksel_test::seed();
+}
+
 }  // namespace

@@ -93,6 +93,23 @@ TEST_P(RootSweeps, NoOneElseSolvesWhatHasNone) {
   EXPECT_GE(none, 1);
 }
 
+/// Axes that lie off, as by a rounded pi, leave a doubt at limits and where roots all but meet.
+TEST(RootSweep, WhatRootsLeaveInDoubtIntervalsTell) {
+  const Robot& robot = iksel_test::robot("gen3_6dof");
+  const Solver& solver = iksel_test::solver("gen3_6dof");
+  Dice dice(iksel_test::seed());
+  int noes = 0;
+  int proven = 0;
+  for (Pose target : iksel_test::random_targets(robot, iksel_test::cases(3000, 3000))) {
+    target.linear() = iksel_test::rotation_of_rpy<double>(dice.vector(3.1));
+    const Result result = solver.solve(target);
+    noes += !result.success();
+    proven += !result.success() && result.proof != Proof::none;
+  }
+  EXPECT_GT(noes, 1000);
+  EXPECT_GE(proven, noes * 99 / 100) << "seed " << iksel_test::seed();
+}
+
 /// A joint past its limit by far more than the tolerances, or by what they allow.
 TEST_P(RootSweeps, WhatLiesJustOutsideTheLimitsIsTold) {
   constexpr double kTolerance = 1e-6;

@@ -233,7 +233,7 @@ TEST_P(Sweeps, BranchesAreMeasuredAsTheyAreSolved) {
     iksel::SolveRequest request;
     if (i % 2 == 1) request.norm = iksel::MoveNorm::max;
     branches.measure_moves_from(near.row(static_cast<Eigen::Index>(i)),
-                                iksel::JointMove(7, request));
+                                iksel::JointMove(7, request), /*takes_doubtful=*/i % 4 < 2);
     const iksel::Places places = branches.places(kCount);
     const double most = request.norm == iksel::MoveNorm::two ? 4 : 2;
     iksel::lanes::BranchRow rows[kCount];

@@ -25,6 +25,7 @@ from bench import (
     guard,
     instructions,
     lost,
+    nearby,
     no,
     plan,
     random_arms,
@@ -477,6 +478,7 @@ class TestNo:
             assert cell["false"] == cell["missed"] == cell["disproved"] == 0
             assert (cell["no_us"] is None) == (cell["yes"] == COUNT)
             assert (cell["yes_us"] is None) == (cell["yes"] == 0)
+            assert cell["proven_unasked"] <= cell["proven"] == cell["proofs"]
 
     def test_what_others_find_and_miss(self, monkeypatch):
         """A solver that knows every other solution, and says nonsense of the rest."""
@@ -505,6 +507,18 @@ class TestNo:
         assert "random, 20 per robot" in told
         assert "| `ur3`, random rotations | closed form |" in told
 
+    def test_only_proofs_that_others_were_asked_count_as_tried(self):
+        """Of 40 proofs EAIK met 30, and a slow solver 3."""
+        counts = {"IKSel": 40, "EAIK": 30, "KDL LMA": 3}
+        cells = []
+        for name, count in counts.items():
+            settings = no_plan.no_cell("ur3", name, no_plan.NO_KINDS[1], QUICK)
+            result = {"proofs": count, "disproved": int(name == "EAIK")}
+            cells.append({"settings": settings, "result": result})
+        told = no_section.tried_proofs(View({"size": vars(QUICK), "cells": cells}))
+        assert "gave 40 proofs" in told
+        assert "EAIK 30; KDL LMA 3. Proofs that their answers refute: 1." in told
+
     def test_wrong_proofs_and_answers_are_told(self):
         wanted = no_plan.no_cell("ur3", "IKSel", "uniform", QUICK)
         cell = {"disproved": 1, "false": 2}
@@ -522,6 +536,25 @@ class TestNo:
 
 
 class TestBranches:
+    def test_what_is_least_nearby(self):
+        """Where `near` ends no neighbour is nearer; from the farthest answer one is."""
+        arm = load_arm("panda")
+        solver = iksel.Solver(arm.robot)
+        starts = arm.robot.random_configurations(5, SEED + 1)
+        poses = arm.robot.fk(arm.robot.random_configurations(5, SEED))
+        for pose, start in zip(poses, starts, strict=True):
+            answer = solver.solve(pose, near=start)
+            assert nearby.is_least_nearby(arm, pose, start, answer.q)
+        farthest = [
+            solver.solve_all(pose, near=start).q[-1]
+            for pose, start in zip(poses, starts, strict=True)
+        ]
+        least = [
+            nearby.is_least_nearby(arm, *beside)
+            for beside in zip(poses, starts, farthest, strict=True)
+        ]
+        assert sum(least) <= 1
+
     def test_turns_and_gaps(self, arm):
         chain = arm.chain
         q = arm.robot.random_configurations(COUNT, SEED)

@@ -439,3 +439,22 @@ def test_warming_up_does_not_take_long():
     times, _ = time_calls(slow, [(i,) for i in range(100)], 0.05)
     assert len(times) < 10
     assert len(calls) - len(times) <= 2
+
+
+@pytest.mark.parametrize("name", ["pink", "mink"])
+@pytest.mark.filterwarnings("ignore")
+def test_loops_take_joints_without_limits(name):
+    """Each answer is one, also by turns beyond where joints start."""
+    try:
+        ENUMERATORS[name].version()
+    except UnsupportedError as reason:
+        pytest.skip(str(reason))
+    arm = load_arm("gen3_6dof")
+    assert np.isinf(arm.chain.upper).any()
+    settings = asked_cell(arm.name, name, KINDS[0], QUICK) | {"count": 10}
+    settings["limit_s"] = 2.0
+    cell = cells.asked(arm, targets_of(settings), settings)
+    assert set(cell) == {"one", "nearest"}
+    for figures in cell.values():
+        assert figures["count"] == 10
+        assert figures["wrong"] == figures["missed"] == 0

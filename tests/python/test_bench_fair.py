@@ -36,7 +36,7 @@ from bench.plans.shared import at_level
 from bench.rivals import RIVALS
 from bench.rivals.base import Run, least_run
 from bench.sections import choices as choices_section
-from bench.sections import cut_offs
+from bench.sections import cut_offs, fastest, target_counts
 from bench.sections import rivals as rivals_section
 from bench.settings import targets_of
 from bench.size import QUICK, Job
@@ -206,6 +206,18 @@ class TestFair:
         assert "| IK-Geo | returns nothing |" in text
         assert "| KDL LMA | 0.00 |" in text
 
+    def test_counts_under_a_table(self):
+        cells = []
+        for name, count in (("IKSel", 900), ("KDL LMA", 90), ("OptIK", 90)):
+            settings = rivals.rival_cell("cvr038", name, "lines", QUICK)
+            cells.append((settings, {"count": count}))
+        settings = rivals.rival_cell("panda", "OptIK", "lines", QUICK)
+        told = target_counts.text(
+            View(report_of([*cells, (settings, {"count": 90})])), "lines"
+        )
+        assert told == "Targets per robot, seed 1: 90 (IKSel: 900)."
+        assert target_counts.text(View(report_of([])), "lines") == ""
+
     def test_the_least_cut_off(self):
         """Of 1,000 calls of 1 to 1,000 us it is 999; without that many, none."""
         times = np.arange(1.0, 1_001.0) * 1e3
@@ -264,28 +276,115 @@ class TestFair:
 
 
 class TestReadme:
-    FOUND = {"EAIK": {"right": 1, "mean_us": 5.42}}  # noqa: RUF012 - never changed
+    @staticmethod
+    def figures(mean, missed=0, wrong=0):
+        us = [mean, mean]
+        return {"us": us, "missed": missed, "wrong": wrong, "count": 1_000}
 
-    def test_not_measured_is_not_none(self):
-        assert readme.enumerating({}, None) == "not measured"
-        assert readme.enumerating(self.FOUND, None) == "EAIK 5.4 µs (all)"
-
-    def test_the_fastest_that_enumerates(self):
-        def figures(mean, missed=0):
-            return {"us": [mean, mean], "missed": missed, "count": 1_000}
-
-        asked = {
-            "IKSel": {"one": figures(1.0)},
-            "pink": {"one": figures(0.5)},
-            "frankik": {"one": figures(2.0, 1_000)},
-            "ssik": {"one": figures(130.0), "every": figures(90.0)},
-            "EAIK": {"every": figures(140.0)},
+    def test_the_fastest_that_misses_none(self):
+        """Faster ones that miss some are not shown, unless there is no other."""
+        assert fastest.enumerating({}) == "not measured"
+        assert fastest.enumerating({"IKSel": {}}) == "none of those asked"
+        found = {
+            "IKSel": {"one": self.figures(1.0), "every": self.figures(3.0)},
+            "pink": {"one": self.figures(0.5)},
+            "frankik": {"one": self.figures(2.0, 1_000)},
+            "frankik, defaults": {"one": self.figures(2.5, 3)},
+            "opw": {"one": self.figures(2.6, wrong=1)},
         }
-        assert readme.enumerating({}, asked) == "ssik 130 µs"
-        asked["EAIK"] = {"every": figures(4.5, 3)}
-        expected = "EAIK 4.50 µs (all, misses 3 of 1,000)"
-        assert readme.enumerating({}, asked) == expected
-        assert readme.enumerating(self.FOUND, {}) == "none of those asked"
+        told = fastest.enumerating(found)
+        assert told == "opw 2.60 µs (IKSel 1.00, 1 of 1,000 wrong)"
+        found["ssik"] = {"one": self.figures(130.0), "every": self.figures(90.0)}
+        assert fastest.enumerating(found) == "ssik 130 µs (IKSel 1.00)"
+        # All is held against all.
+        found["EAIK"] = {"every": self.figures(4.5)}
+        assert fastest.enumerating(found) == "EAIK 4.50 µs for all (IKSel 3.00)"
+
+    def test_a_no_of_one_that_looks(self):
+        def cell(mean, missed):
+            us = [mean, mean]
+            return {"us": us, "missed": missed, "count": 1_000, "noes": 600}
+
+        assert fastest.enumerators_no({}) == "not measured"
+        found = {"IKSel": cell(0.1, 0), "ikdh": cell(9.0, 0), "py-ikgeo": cell(1.0, 5)}
+        assert fastest.enumerators_no(found) == "ikdh 9.00 µs"
+        found["frankik"] = cell(3.75, 4)
+        assert fastest.enumerators_no(found) == "frankik 3.75 µs (misses 4 of 400)"
+
+    @pytest.mark.parametrize(
+        ("unasked", "proven", "told"),
+        [
+            (0, 0, "4.00 µs, none proven"),
+            (8, 8, "4.00 µs, 80.0 % proven"),
+            (0, 8, "4.00 µs, none proven; `prove=True`: 20.0 µs, 80.0 % proven"),
+        ],
+    )
+    def test_our_no_says_what_is_certain(self, unasked, proven, told):
+        cell = {"proven": proven, "swept": 2, "searched": 8 - proven}
+        cell |= {"proven_unasked": unasked, "no_us": [4.0, 4.0]}
+        assert readme.section._our_no(cell | {"proven_us": [20.0, 20.0]}) == told
+
+    def test_it_is_of_the_report(self, capsys):
+        """Or, where sources have changed since, says so and goes on."""
+        readme.main(["--check"])
+        assert capsys.readouterr().err.count("figures left as they are") <= 1
+
+    @pytest.fixture
+    def copy(self, tmp_path_factory, monkeypatch, checkout):
+        """Of README.md in a folder of its own, with what it is made of."""
+        checkout[1]()
+        folder = tmp_path_factory.mktemp("copy")
+        for path in ("python/examples", "cpp/examples", "cpp/robots"):
+            (folder / path).parent.mkdir(exist_ok=True)
+            (folder / path).symlink_to(ROOT / path)
+        text = (ROOT / "README.md").read_text(encoding="utf-8")
+        broken = text.replace("import sys", "import nothing", 1)
+        (folder / "README.md").write_text(broken, encoding="utf-8")
+        monkeypatch.setattr(readme, "ROOT", folder)
+        monkeypatch.setattr(readme, "View", lambda report: report)
+        shown = dict.fromkeys(readme.FIGURES, lambda _: "new figures")
+        monkeypatch.setattr(readme, "FIGURES", shown)
+        return folder / "README.md"
+
+    @pytest.mark.parametrize("check", [False, True])
+    @pytest.mark.parametrize(
+        "made_at",
+        [
+            ("HEAD", ""),
+            ("0123456789", "not in this repository"),
+            ("unknown", "unknown commit"),
+            ("HEAD+", "differs from its commit"),
+        ],
+    )
+    def test_what_is_rendered(self, copy, monkeypatch, capsys, check, made_at):
+        """Figures of a fresh report alone; --check writes nothing at all.
+
+        A report that later commits have left behind is no error of --check, one that
+        never was of a commit is.
+        """
+        commit, why = made_at
+        made = {"machine": {"commit": commit}}
+        monkeypatch.setattr(readme, "load_report", lambda _: made)
+        broken = copy.read_text(encoding="utf-8")
+        arguments = ["--check"] if check else []
+        ended = ""
+        try:
+            readme.main(arguments)
+        except SystemExit as reason:
+            ended = str(reason)
+        after = copy.read_text(encoding="utf-8")
+        if check:
+            assert after == broken
+            fit = why in {"", "not in this repository"}
+            assert ("stale block" if fit else why) in ended
+            return
+        assert after.count("new figures") == (0 if why else len(readme.FIGURES))
+        assert why in capsys.readouterr().err
+        assert ended == ("1" if why else "")
+        # What sources give is made anew in any case.
+        assert "import nothing" not in after
+        if why == "not in this repository":
+            readme.main(["--check"])
 
 
 @pytest.fixture

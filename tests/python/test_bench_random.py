@@ -65,7 +65,7 @@ def test_the_command_prints_the_section(capsys, monkeypatch, tmp_path):
     words = ["random", "srs", "--quick", "--arms", "1", "--targets", "50"]
     assert command.main(words) == 0
     told = capsys.readouterr().out
-    assert "up to 1 arms of each build" in told
+    assert "Arms: up to 1 of each build" in told
     assert "| `srs` | 1 | 90 | 0 | 0 |" in told
 
 

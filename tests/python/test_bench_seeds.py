@@ -14,7 +14,7 @@ from bench.ikgeo import cells as ikgeo_cells
 from bench.ikgeo.search import Search
 from bench.ikgeo.subproblems import subproblem_1, subproblem_3, subproblem_4, turned
 from bench.markdown import NONE
-from bench.paper import seeding
+from bench.paper import published, seeding
 from bench.rivals import ikgeo as package
 from bench.rivals.base import UnsupportedError
 from bench.sections import ikgeo as ikgeo_section
@@ -269,6 +269,27 @@ class TestText:
         assert "Over C0, a first attempt arrives from" in told
         assert f"| C0, MDN | JAX | {NONE} |" in told
         assert "not measured" in told
+
+    @pytest.mark.parametrize(
+        ("off", "count", "word"),
+        [(0.5, 10_000, "holds"), (1.7, 2_000, "undecided"), (4.0, 2_000, "missed")],
+    )
+    def test_a_difference_whose_bound_crosses_the_aim(
+        self, monkeypatch, off, count, word
+    ):
+        """Is neither held nor missed."""
+
+        def cell(_, robot):
+            rates = published.IK_GEO
+            direct, seeded = (rates[how][robot][0] - off for how in rates)
+            return {
+                "count": count,
+                "direct": count * direct / 100,
+                "seeded": count * seeded / 100,
+            }
+
+        monkeypatch.setattr(ikgeo_section, "_papers", cell)
+        assert f"aimed at: {word}" in ikgeo_section._verdict(self.view())
 
     def test_nothing_measured(self):
         view = View({"size": vars(QUICK), "cells": [], "missing": {}})

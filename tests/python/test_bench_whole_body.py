@@ -11,13 +11,14 @@ import iksel
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import cells, command, report_command
+from bench.chain import WIDE
 from bench.report import installed_rivals
 from bench.rivals.base import UnsupportedError
 from bench.robot_data import VARIABLE
 from bench.whole_body import command as whole_body
 from bench.whole_body import table
 from bench.whole_body.cells import judged, measured
-from bench.whole_body.robots import ROBOTS, WIDE, body_of, file_key, load_body
+from bench.whole_body.robots import ROBOTS, body_of, file_key, load_body
 from bench.whole_body.solvers import SOLVERS, Loop
 
 COUNT = 30

@@ -126,3 +126,22 @@ def test_every_page_has_a_place():
                 lines = [x for x in block.code.split() if not x.startswith(":")]
                 named |= {(page.parent / f"{x}.md").resolve() for x in lines}
     assert set(pages()) <= named
+
+
+def test_readme_links_lead_somewhere() -> None:
+    """To a heading of README.md, or to a file."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    prose = re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+    titles = re.findall(r"^#+ (.+)$", prose, flags=re.MULTILINE)
+    # As GitHub names headings.
+    anchors = {
+        re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles
+    }
+    links = re.findall(r"\]\(([^)\s]+)\)", prose)
+    assert sum(link.startswith("#") for link in links) > 5
+    for link in links:
+        path, _, anchor = link.partition("#")
+        if link.startswith("#"):
+            assert anchor in anchors, link
+        elif not link.startswith("https:"):
+            assert (ROOT / path).exists(), link

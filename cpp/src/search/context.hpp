@@ -94,6 +94,10 @@ struct Workspace {
     }
     /// Whether the ends of arcs tell in closed form that there are none.
     [[nodiscard]] bool has_closed_ends() const { return ends && ends->are_closed(); }
+    /// Whether solutions lie on arcs of which seeds alone tell, some of their ends not being known.
+    [[nodiscard]] bool has_unknown_arcs() const {
+      return curve && !sweep && !(ends && ends->are_all());
+    }
     /// All branches of a goal of that task; null if it cannot be solved in closed form at once.
     [[nodiscard]] Enumeration* branches_of(const TaskSpace& task);
 

@@ -38,8 +38,10 @@ Explored explore_branches(const Parts& parts, BranchList& branches, Proof kind, 
                              ? is_empty || (answers.has_any() && has_arrived)
                              : enumerated.was_tried() && branches.is_certain_but_for_limits();
   const bool is_through = are_known && (is_empty || !branches.has_families());
-  // Of full poses, as the roots are.
-  if (kind == Proof::sweep && parts.request.prove && !answers.has_any() &&
+  // Of full poses, as the roots are. Where these leave a doubt, it is sooner told by intervals than
+  // by seeds.
+  const bool is_proof_wanted = parts.request.prove || !is_through;
+  if (kind == Proof::sweep && is_proof_wanted && !answers.has_any() &&
       parts.workspace.lanes->enclosure && parts.workspace.lanes->enclosure->rules_out(Y)) {
     return Explored::done(Proof::intervals);
   }
@@ -93,6 +95,17 @@ Explored explore_any(const Parts& parts, const Pose& Y, bool at_samples = true) 
   const Proof none = sweep.proof_of_none();
   if (none == Proof::none && move_inside(sweep.found())) return any;
   return Explored::done(none);
+}
+/// For any, once all else has found none and nothing is proven: by the ends of its arcs.
+template <typename Parts>
+void explore_ends(const Parts& parts) {
+  Workspace::InLanes& lanes = *parts.workspace.lanes;
+  const bool is_worth_it = lanes.ends && !lanes.has_closed_ends() && !parts.answers.has_any();
+  if (!is_worth_it || !parts.answers.should_continue()) return;
+  lanes.ends->begin();
+  for (std::size_t i = 0; i < lanes.ends->size(); ++i) lanes.ends->find(i, parts.goal.target());
+  const auto count = static_cast<std::size_t>(lanes.ends->count());
+  parts.refine_rows(lanes.ends->found().data(), count, /*are_answers=*/false, Width::narrow);
 }
 /// For one that is free in the goal's scene.
 Explored explore_free_curve(const FirstSearch& parts, const Pose& Y);

@@ -51,19 +51,29 @@ Explored explore_spread(const AllSearch& parts, const Pose& Y) {
   return answers.has_any() ? Explored::done() : explore_any(parts, Y, /*at_samples=*/false);
 }
 
-/// Refines the least moves to the curve, the nearest first, until one leads to such an answer.
-void refine_nearest(const AllSearch& parts, NearestOnCurve& curve) {
+/// Refines the least moves to the curve, the nearest first, until one leads to such an answer;
+/// where none does, once more without what is doubtful, which may have hidden another.
+void refine_nearest(const AllSearch& parts, NearestOnCurve& curve, const Pose& Y) {
+  // One beside a limit may be beyond it once it is refined, and a whole turn away.
+  constexpr double kLost = 0.01;
   Collector& answers = parts.answers;
-  const double known = answers.move_to_beat();
+  double known = answers.move_to_beat();
   curve.find_between(known);
-  parts.work.lap(&StageTimes::query);
-  bool has_led_to_answer = false;
-  for (std::size_t i = 0; i < curve.size() && !has_led_to_answer; ++i) {
-    // One beside a limit may be beyond it once it is refined, and a whole turn away.
-    constexpr double kLost = 0.01;
-    parts.refine_rows(curve.q(i), 1, /*are_answers=*/true, Width::narrow);
-    const double move = answers.least_move();
-    has_led_to_answer = move < known && move < curve.move(0) + kLost;
+  const auto refine = [&] {
+    parts.work.lap(&StageTimes::query);
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      parts.refine_rows(curve.q(i), 1, /*are_answers=*/true, Width::narrow);
+      const double move = answers.least_move();
+      if (move < known && move < curve.move(0) + kLost) return true;
+    }
+    return false;
+  };
+  bool has_led_to_answer = refine();
+  known = answers.move_to_beat();
+  if (curve.size() > 0 && curve.move(0) + kLost < known) {
+    const auto& [near, move] = answers.nearest_to();
+    curve.find(Y, near, move, known, /*takes_doubtful=*/false);
+    has_led_to_answer = refine();
   }
   const bool is_too_far = answers.least_move() >= answers.within();
   answers.settle(curve.is_settled() && (has_led_to_answer || is_too_far));
@@ -116,14 +126,15 @@ Explored explore_nearest(const AllSearch& parts, const Pose& Y) {
   RowSeeds first(stays ? nullptr : &near, parts.work);
   search(lanes.refiner, first, answers, parts.work);
   const bool is_bounded = answers.within() < kInfinity;
-  const bool is_seen = curve.find_at_samples(Y, near, move, answers.move_to_beat());
+  const bool is_seen =
+      curve.find_at_samples(Y, near, move, answers.move_to_beat(), /*takes_doubtful=*/true);
   parts.work.lap(&StageTimes::query);
   // Where there is none, what looks for any is sooner through than what looks between samples.
   if (!is_seen && !answers.has_any() && !is_bounded) {
     const Explored any = explore_any(parts, Y, /*at_samples=*/false);
     if (any.is_done && !answers.has_any()) return any;
   }
-  refine_nearest(parts, curve);
+  refine_nearest(parts, curve, Y);
   if (answers.least_move() < answers.within()) {
     const bool is_singular = parts.model.is_almost_singular(answers.solution(answers.nearest()));
     if (is_singular || curve.is_in_doubt()) {

@@ -105,6 +105,7 @@ Proof search_pose(const AllSearch& parts, RowSeeds& near, GivenSeeds& given, con
   if (wants_nearest && !lanes.curve) answers.set_surfaces();
   answers.converge_from_near();
   if (!parts.run(lanes.refiner, near, given)) search_widely(parts);
+  explore_ends(parts);
   if (wants_nearest && !lanes.sweep && !answers.is_out_of_time()) explore_families(parts, Y);
   return Proof::none;
 }

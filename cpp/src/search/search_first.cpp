@@ -73,6 +73,7 @@ Proof search_pose(const FirstSearch& parts, RowSeeds& near, GivenSeeds& given, c
                          parts.work);
   search(lanes.refiner, screened, parts.answers, parts.work);
   parts.work.lap(&StageTimes::iterate);
+  explore_ends(parts);
   return Proof::none;
 }
 

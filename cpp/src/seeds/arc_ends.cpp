@@ -10,7 +10,7 @@ namespace iksel {
 
 ArcEnds::ArcEnds(const ChainModel& whole, const LockedArms& arms, double position_tolerance,
                  double rotation_tolerance, const lanes::LaneKernels& kernels)
-    : joints_(whole.joints), are_closed_(arms.are_closed) {
+    : joints_(whole.joints), are_all_(arms.are_all), are_closed_(arms.are_closed) {
   const auto make_end = [&](const LockedArm& arm) {
     const ChainModel& model = *arm.model;
     End end;

@@ -31,6 +31,8 @@ class ArcEnds {
   /// Solves the target with the i-th arm, or for the crossings of a side: adds what is inside the
   /// limits, or so near to them that it cannot be told. False if there may be others.
   bool find(std::size_t i, const Pose& T_base_tcp);
+  /// Whether every end is found.
+  [[nodiscard]] bool are_all() const { return are_all_; }
   /// Whether it can be told in closed form that no curve of solutions lies inside the limits: none
   /// goes through one of the places.
   [[nodiscard]] bool are_closed() const { return are_closed_; }
@@ -60,7 +62,7 @@ class ArcEnds {
 
   const JointSpace& joints_;
   std::vector<End> ends_;
-  bool are_closed_;
+  bool are_all_, are_closed_;
   std::optional<Crossing> crossing_;
   std::vector<double> found_;
 };

@@ -19,10 +19,6 @@ constexpr double kLeastPiece = 1e-7;
 constexpr std::size_t kMany = 128;
 constexpr double kMostLeft = 0.8;
 constexpr std::size_t kMostPieces = 512;
-/// What axes that lie off where the form has them may do to the target, by their deviation, which
-/// counts each twice: it turns what is behind it back and forth, and moves it by as much at a lever
-/// of 1.
-constexpr double kAxesOff = 2;
 
 }  // namespace
 
@@ -34,8 +30,7 @@ BranchEnclosure::BranchEnclosure(const ChainModel& model, const ClosedFormChain&
   lower_ = model.joints.sample_lower(chain.held) + offset;
   upper_ = model.joints.sample_upper(chain.held) + offset;
   chain_.use_limits(model);
-  chain_.form.error = chain.tolerance_of_target(model, position_tolerance, rotation_tolerance) +
-                      kAxesOff * chain.deviation * std::max(1.0, model.reach / chain.unit);
+  chain_.form.error = chain.error_of_target(model, position_tolerance, rotation_tolerance);
   // Memory is taken here, and none while solving.
   open_.reserve(2 * kMostPieces);
   halves_.reserve(2 * kMostPieces);

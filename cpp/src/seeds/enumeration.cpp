@@ -27,7 +27,8 @@ Enumeration::Enumeration(const ChainModel& model, const ClosedFormChain& chain, 
       kernels_(kernels),
       is_nominal_(is_nominal),
       position_tolerance_(position_tolerance),
-      rotation_tolerance_(rotation_tolerance) {
+      rotation_tolerance_(rotation_tolerance),
+      enclosed_error_(chain.error_of_target(model, position_tolerance, rotation_tolerance)) {
   chain_.use_limits(model);
   chain_.form.error =
       kMargin *
@@ -53,6 +54,7 @@ void Enumeration::find(const Pose& Y, bool wants_all) {
   kernels_.solve_inside(chain_.form, pack_);
   size_ = 0;
   is_measured_ = false;
+  is_enclosed_ = false;
   certain_ = is_nominal_;
   certain_but_for_limits_ = is_nominal_;
   for (int lane = 0; lane < lanes::kWidth; ++lane) take(Y, lane, wants_all);
@@ -78,7 +80,7 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   double bound = pack_.error[lane];
   bool is_sure = bound < lanes::kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
-  if (is_sure && beyond > bound) return;
+  if (is_sure ? beyond > bound : is_nominal_ && is_enclosed_outside(lane)) return;
   if (is_sure && beyond > 0 && is_nominal_ && is_beyond(Y, q)) return;
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;
@@ -115,6 +117,16 @@ void Enumeration::take_turned(const Pose& Y, int lane) {
     next() = ways[k];
     ++size_;
   }
+}
+
+bool Enumeration::is_enclosed_outside(int lane) {
+  if (!is_enclosed_) {
+    lanes::ClosedForm form = chain_.form;
+    form.error = enclosed_error_;
+    kernels_.enclose_branches(form, pack_, /*half=*/0, room_);
+  }
+  is_enclosed_ = true;
+  return room_[pack_.sign[2][lane] > 0 ? 0 : 1][lane] < 0;
 }
 
 bool Enumeration::is_beyond(const Pose& Y, const Joints& q) const {

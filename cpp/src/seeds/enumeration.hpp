@@ -44,6 +44,9 @@ class Enumeration final : public BranchList {
   void take_turned(const Pose& Y, int lane);
   /// Whether the arm's solution beside q is certainly no answer (beyond_limits.hpp).
   [[nodiscard]] bool is_beyond(const Pose& Y, const Joints& q) const;
+  /// Whether it is certain that a lane's branch is outside of limits, or none, however little its
+  /// angles are determined (enclosure_kernel.hpp).
+  bool is_enclosed_outside(int lane);
   /// Whether a lane's branch reaches the target far enough from singularities to tell by how much
   /// the tolerances may move it [rad].
   bool is_regular(int lane, double& bound);
@@ -53,9 +56,12 @@ class Enumeration final : public BranchList {
   const lanes::LaneKernels& kernels_;
   bool is_nominal_;
   double position_tolerance_, rotation_tolerance_;  ///< [m, rad]
+  double enclosed_error_;                           ///< what the target may be off by, at most
   lanes::BranchPack pack_ = all_branches();
   lanes::Regularity regularity_{};
   bool is_measured_ = false;  ///< these, of the last find()
+  double room_[2][lanes::kWidth];
+  bool is_enclosed_ = false;  ///< the same of these
   const JointVector* held_ = nullptr;
 };
 

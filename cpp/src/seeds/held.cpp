@@ -65,7 +65,8 @@ bool Held::find(const Pose& T_base_tcp, const NearestTo& to) {
   // Of the usual size, however little these joints count beside the others.
   JointVector weights = to.move.weights().segment(arm_.first, kCurveJoints);
   if (weights.maxCoeff() > 0) weights /= weights.maxCoeff();
-  curve_.find(target_behind(T_base_tcp), behind, JointMove(std::move(weights)), kInfinity);
+  curve_.find(target_behind(T_base_tcp), behind, JointMove(std::move(weights)), kInfinity,
+              /*takes_doubtful=*/false);
   if (curve_.size() == 0) return false;
   behind = Eigen::Map<const Eigen::VectorXd>(curve_.q(0), kCurveJoints);
   // Where it is preferred itself, the swept joint may have had to move.

@@ -13,17 +13,20 @@
 namespace iksel {
 
 void NearestOnCurve::look_between_samples() {
-  // What is found where branches exist bounds what is looked for where they end.
+  // Those at one end of which a branch is.
+  const auto ends = [&](std::size_t i) {
+    const std::uint64_t any = exist_[i] | far_[i];
+    return (any & behind(none_[i])) | (none_[i] & behind(any));
+  };
+  // What is found where branches exist bounds what is looked for where they end. Beside that joints
+  // turn as the root of the swept one, farther than the samples tell.
   visit_gaps([&](std::size_t i) {
     const std::uint64_t any = exist_[i] | far_[i];
     const std::uint64_t within = exist_[i] | within_[i];
-    return any & behind(any) & (within | behind(within)) &
+    return any & behind(any) & (within | behind(within) | behind(ends(i)) | before(ends(i))) &
            ~behind(find_staying(static_cast<int>(i)));
   });
-  visit_gaps([&](std::size_t i) {
-    const std::uint64_t any = exist_[i] | far_[i];
-    return (any & behind(none_[i])) | (none_[i] & behind(any));
-  });
+  visit_gaps(ends);
   visit_gaps([&](std::size_t i) { return find_loops(static_cast<int>(i)); });
 }
 

@@ -22,11 +22,11 @@ double NearestOnCurve::least_move(double value) const {
 }
 
 bool NearestOnCurve::find_at_samples(const Pose& Y, const JointVector& near, const JointMove& move,
-                                     double known) {
+                                     double known, bool takes_doubtful) {
   near_ = near[branches_.joint()];
   weight_ = move.weights()[branches_.joint()];
   takes_largest_ = move.norm() == MoveNorm::max;
-  branches_.measure_moves_from(near, move);
+  branches_.measure_moves_from(near, move, takes_doubtful);
   branches_.set_target(Y);
   places_ = branches_.places(kSamples);
   known_move_ = known;

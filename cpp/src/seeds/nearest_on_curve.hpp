@@ -24,13 +24,16 @@ class NearestOnCurve {
 
   /// Looks for the local minima of the move from `near` to answers to Y (reduction.hpp), each at
   /// its nearest periodic image. Only as far from `near` as an answer may be nearer than those
-  /// found, and than one that is known whose move is `known`; none: infinity.
-  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known) {
-    find_at_samples(Y, near, move, known);
+  /// found, and than one that is known whose move is `known`; none: infinity. `takes_doubtful`:
+  /// also to what is at a limit, which refining may move beyond it.
+  void find(const Pose& Y, const JointVector& near, const JointMove& move, double known,
+            bool takes_doubtful) {
+    find_at_samples(Y, near, move, known, takes_doubtful);
     find_between(known);
   }
   /// The first part of it; returns whether an answer was seen.
-  bool find_at_samples(const Pose& Y, const JointVector& near, const JointMove& move, double known);
+  bool find_at_samples(const Pose& Y, const JointVector& near, const JointMove& move, double known,
+                       bool takes_doubtful);
   /// The second part.
   void find_between(double known);
   /// Whether nothing that matters is nearer than what leaves the swept joint where it is: moves of
@@ -160,6 +163,10 @@ class NearestOnCurve {
   /// Bits of the places behind these.
   [[nodiscard]] std::uint64_t behind(std::uint64_t places) const {
     return places << 1 | (places_.turns ? places >> (kSamples - 1) : 0);
+  }
+  /// And of those before.
+  [[nodiscard]] std::uint64_t before(std::uint64_t places) const {
+    return places >> 1 | (places_.turns ? places << (kSamples - 1) : 0);
   }
   /// The samples between which and those before a branch that is at neither may be, as bits.
   [[nodiscard]] std::uint64_t find_loops(int branch) const;

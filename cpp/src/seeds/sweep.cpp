@@ -119,16 +119,7 @@ bool Sweep::follow_nearest() {
     least_ = std::min(least_, place.value);
     branches_.solve_one(place.branch, [&](int /*lane*/) { return place.at; });
     branches_.copy_joints(0, q_.data());
-    if (!is_found(q_.data())) found_.insert(found_.end(), q_.begin(), q_.end());
-  }
-  return false;
-}
-
-bool Sweep::is_found(const double* q) const {
-  // Where branches meet, all lead to the same place.
-  constexpr double kSame = 1e-3;
-  for (std::size_t i = 0; i < found_.size(); i += kCurveJoints) {
-    if (joints_.are_near(&found_[i], q, kSame)) return true;
+    found_.insert(found_.end(), q_.begin(), q_.end());
   }
   return false;
 }

@@ -96,8 +96,6 @@ class Sweep {
   /// Looks closely at those that are nearer to an answer than what is beside them, and gives them;
   /// true if there is one.
   bool follow_nearest();
-  /// Whether it is, but for what hardly matters, among what was found.
-  [[nodiscard]] bool is_found(const double* q) const;
   /// From a place to the one nearest to an answer, up to `width` away; true if there is one.
   bool follow(Place& place, double width);
   /// How far from an answer a branch is, at value(lane), in off[lane]: where limits say nothing, as

@@ -84,11 +84,13 @@ void SweptBranches::solve_all(double value) {
   solve(all_);
 }
 
-void SweptBranches::measure_moves_from(const JointVector& near, const JointMove& move) {
+void SweptBranches::measure_moves_from(const JointVector& near, const JointMove& move,
+                                       bool takes_doubtful) {
   measures_moves_ = true;
   lanes::MoveForm& form = move_form_;
-  // An image at a limit may lie beyond it once it is refined.
+  // An image at a limit may lie beyond it once it is refined, or inside.
   form.margin = 1e-5;
+  const double inside = takes_doubtful ? -form.margin : form.margin;
   form.takes_largest = move.norm() == MoveNorm::max;
   for (int i = 0; i < kCurveJoints; ++i) {
     const int j = i == kCurveJoints - 1 ? chain_.held : chain_.joints[i];
@@ -97,8 +99,8 @@ void SweptBranches::measure_moves_from(const JointVector& near, const JointMove&
     form.weight[i] = move.weights()[j];
     form.turns[i] = !joints_.is_slide(j);
     form.has_images[i] = joints_.is_periodic(j);
-    form.lower[i] = joints_.lower[j] + form.margin + offset;
-    form.upper[i] = joints_.upper[j] - form.margin + offset;
+    form.lower[i] = joints_.lower[j] + inside + offset;
+    form.upper[i] = joints_.upper[j] - inside + offset;
     form.turns_in_sum[i] = joints_.turns_in_sum(j);
   }
   form.sums = joints_.turning.empty() ? nullptr : chain_.form.sums;

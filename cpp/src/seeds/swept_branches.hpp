@@ -96,8 +96,9 @@ class SweptBranches {
     kernels_.rate_branch(chain_.form, one_, bound, off);
   }
 
-  /// From now on, the moves from `near` are measured to all that is solved [rad].
-  void measure_moves_from(const JointVector& near, const JointMove& move);
+  /// From now on, the moves from `near` are measured to all that is solved [rad]: to images inside
+  /// the limits, as far as these are so certainly, or (`takes_doubtful`) may be.
+  void measure_moves_from(const JointVector& near, const JointMove& move, bool takes_doubtful);
   [[nodiscard]] MoveBounds bounds() const { return {move_form_, straight_}; }
   /// What was measured of a branch at a value of the swept joint.
   [[nodiscard]] BranchPoint point(double swept, const lanes::BranchRow& row, int lane) const {

@@ -145,7 +145,22 @@ Result Solver::Impl::find_first(const Goal& goal, const SolveRequest& request, W
                                 StageTimes* times, Effort effort) const {
   const bool wraps = tips != nullptr || workspace.scheme.whole_turns;
   FirstAnswer answers(wraps, goal, request, options.max_attempts, effort);
-  return answers.result(search_for(answers, workspace, times));
+  Result result = answers.result(search_for(answers, workspace, times));
+  const bool may_miss_arcs = effort == Effort::full && goal.is_full_pose() && !goal.scene() &&
+                             request.database_seeds && workspace.lanes &&
+                             workspace.lanes->has_unknown_arcs();
+  const bool is_over =
+      result.success() || result.proof != Proof::none || result.status == Status::out_of_time;
+  if (is_over || !may_miss_arcs) return result;
+  // Short arcs may be but where seeds come to rest, which takes more steps than what screens them
+  // has: as solve_all, which then finds nothing where this does not.
+  const auto has_any = [](const Collector& found) { return found.has_any(); };
+  Collector search(goal, request, {kSame, /*until_complete=*/true}, has_any, options.max_attempts,
+                   workspace.collected);
+  collect(search, workspace, times);
+  if (search.has_any()) goal.check(workspace.collected.found.at(0), result);
+  result.iterations += search.result().iterations;
+  return result;
 }
 
 void Solver::Impl::collect(Collector& collector, Workspace& workspace, StageTimes* times) const {

@@ -68,6 +68,15 @@ struct ClosedFormChain {
                          (reversed ? model.reach_of_tcp() : 0.0);
     return std::max({(position + lever * rotation) / unit, rotation, kStructureTolerance});
   }
+  /// The same of targets that the form shows for them.
+  [[nodiscard]] double error_of_target(const ChainModel& model, double position,
+                                       double rotation) const {
+    // What axes that lie off may do to it, by their deviation, which counts each twice: they turn
+    // what is behind them back and forth, and move it by as much at a lever of 1.
+    constexpr double kAxesOff = 2;
+    return tolerance_of_target(model, position, rotation) +
+           kAxesOff * deviation * std::max(1.0, model.reach / unit);
+  }
   /// Whether the axes lie only nearly as the form has them.
   [[nodiscard]] bool is_almost() const { return deviation > 12 * kStructureTolerance; }
   /// Whether there are axes besides the chain's joints.

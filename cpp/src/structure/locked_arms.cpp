@@ -32,17 +32,19 @@ LockedArms LockedArms::of(const ChainModel& whole) {
   LockedArms found;
   const JointSpace& joints = whole.joints;
   if (whole.dof != kCurveJoints || !is_simple(whole)) return found;
-  bool are_all = joints.sums.empty();
+  found.are_all = joints.sums.empty();
+  bool are_exact = found.are_all;
   for (int j = 0; j < kCurveJoints; ++j) {
     if (joints.type(j) == JointType::continuous || !takes_part_in_self_motion(whole, j)) continue;
     for (const bool is_upper : {false, true}) {
       LockedArm arm = lock(whole, j, is_upper ? joints.upper[j] : joints.lower[j], is_upper);
-      are_all = are_all && is_exact(arm);
+      are_exact = are_exact && is_exact(arm);
+      found.are_all = found.are_all && (arm.pose || arm.residual);
       if (arm.pose || arm.residual) found.arms.push_back(std::move(arm));
     }
   }
   const auto elbow = Elbow::of(whole);
-  if (!are_all || !elbow || !elbow->goes_round()) return found;
+  if (!are_exact || !elbow || !elbow->goes_round()) return found;
   found.are_closed = true;
   const auto is_endless = [&](int j) { return joints.type(j) == JointType::continuous; };
   if ((is_endless(0) || is_endless(2)) && (is_endless(4) || is_endless(6))) {

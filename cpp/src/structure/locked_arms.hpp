@@ -25,6 +25,8 @@ struct LockedArm {
 
 struct LockedArms {
   std::vector<LockedArm> arms;
+  /// Whether there is one of each limit at which arcs of solutions may end.
+  bool are_all = false;
   /// Whether the elbow goes round, no sum is limited, and each joint with limits can be locked and
   /// is solved exactly in closed form: whether there are solutions is then known, by these and the
   /// crossing.

@@ -16,7 +16,7 @@ from bench.check import LIMIT_SLACK, right
 from bench.nearby import RIGHT, is_least_nearby
 from bench.rivals import RIVALS
 from bench.rivals.base import UnsupportedError
-from bench.timing import least_times, time_calls
+from bench.timing import PASSES, least_times, time_calls
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,8 +42,6 @@ RESTARTS = 1_000
 """Random restarts that a branch count is compared with."""
 LIMIT_S = 300.0
 """No further call is timed after this [s]."""
-PASSES = 3
-"""Runs of which each call's least time counts."""
 SHOWN = 50
 """Differences kept by the number of their target."""
 TURN = 2.0 * np.pi
@@ -259,28 +257,3 @@ def branches_by_restarts(
     )
     q = np.array([answer.q for answer in answers if answer.success])
     return distinct(q.reshape(-1, solver.robot.dof))
-
-
-def restarts(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
-    """Branches by solve_all, and by many random restarts of the iteration alone."""
-    solver = iksel.Solver(arm.robot)
-    times, found = time_calls(solver.solve_all, [(p,) for p in goals.poses], LIMIT_S)
-    counts = {"agrees": 0, "more": 0, "fewer": 0}
-    missed = []
-    for i, (pose, ours) in enumerate(zip(goals.poses, found, strict=True)):
-        seed = settings["seed"] + 1 + i
-        truth = len(branches_by_restarts(solver, pose, RESTARTS, seed))
-        verdict = (
-            "agrees" if len(ours) == truth else "more" if len(ours) > truth else "fewer"
-        )
-        counts[verdict] += 1
-        if verdict != "agrees":
-            missed.append([i, len(ours), truth])
-    return {
-        "count": len(goals),
-        **counts,
-        "wrong": judged(arm.chain, goals.poses, [list(o.q) for o in found]).wrong,
-        "branches": sum(len(ours) for ours in found),
-        "mean_us": float(times.mean()) / 1e3,
-        "missed": missed[:SHOWN],
-    }

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import functools
 import time
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import iksel
 from bench.analytic.cells import asked
+from bench.analytic.counted import counted
 from bench.arms import load_arm
-from bench.branches import all_branches, judged, near_branches, restarts
+from bench.branches import all_branches, judged, near_branches
 from bench.check import judge, right
 from bench.ikgeo.cells import enumerated, packaged, searched
 from bench.no import answered
@@ -23,14 +25,15 @@ from bench.paper import newer, paired, seeds_shown
 from bench.paper.artefact import singular_first
 from bench.random_builds import measured as random_builds
 from bench.requests import near_moves, path
+from bench.restarts import restarts
 from bench.rivals import RIVALS
-from bench.rivals.base import UnsupportedError
+from bench.rivals.base import UnsupportedError, least_run
 from bench.seed_makers import first_attempt
 from bench.settings import make_solver, targets_of
 from bench.tails.beside import beside, threads
 from bench.tails.fresh import fresh
 from bench.tails.slowest import calls
-from bench.timing import summary
+from bench.timing import PASSES, summary
 from bench.whole_body import cells as whole_body_cells
 
 if TYPE_CHECKING:
@@ -91,7 +94,7 @@ def rival(settings: Settings) -> dict[str, Any]:
     except UnsupportedError as reason:
         return {"unsupported": str(reason)}
     goals = targets_of(settings)
-    run = solver.run(goals)
+    run = least_run(solver, goals)
     done = len(run.answers)
     verdict = judge(arm.chain, goals.poses[:done], run.answers)
     result = {
@@ -116,7 +119,7 @@ def batch(settings: Settings) -> dict[str, Any]:
     """Many poses in one call: time per pose, best of three.
 
     With "every" all branches of each: IKSel has no such call, so it is asked pose by
-    pose, on one thread. EAIK has no other.
+    pose, on each thread a part of them. EAIK has no other.
     """
     arm = load_arm(settings["robot"])
     goals = targets_of(settings)
@@ -128,12 +131,12 @@ def batch(settings: Settings) -> dict[str, Any]:
         poses = np.array([eaik.prepare(pose, None)[0] for pose in goals.poses])
         call = functools.partial(eaik.batch, poses, threads)
     elif settings.get("every"):
-        call = functools.partial(_each, solver.solve_all, list(goals.poses))
+        call = functools.partial(each, solver.solve_all, list(goals.poses), threads)
     else:
         call = functools.partial(solver.solve_batch, goals.poses, threads=threads)
     returned: Any = call()
     times = []
-    for _ in range(3):
+    for _ in range(PASSES):
         begin = time.perf_counter_ns()
         returned = call()
         times.append(time.perf_counter_ns() - begin)
@@ -153,9 +156,15 @@ def batch(settings: Settings) -> dict[str, Any]:
     }
 
 
-def _each(call: Callable[..., Any], poses: Sequence[Array]) -> list[Any]:
-    """A call on every pose."""
-    return [call(pose) for pose in poses]
+def each(call: Callable[..., Any], poses: Sequence[Array], threads: int) -> list[Any]:
+    """A call on every pose, in the order of these: on each thread a part of them."""
+    if threads == 1:
+        return [call(pose) for pose in poses]
+    size = -(-len(poses) // threads)
+    parts = [poses[i : i + size] for i in range(0, len(poses), size)]
+    with ThreadPoolExecutor(threads) as pool:
+        done = pool.map(lambda part: each(call, part, 1), parts)
+        return [returned for some in done for returned in some]
 
 
 def artefact(settings: Settings) -> dict[str, Any]:
@@ -194,6 +203,7 @@ ON_TARGETS: dict[str, Callable[[Arm, Targets, Settings], dict[str, Any]]] = {
     "ikgeo_enumeration": enumerated,
     "first_attempt": first_attempt,
     "asked": asked,
+    "counted": counted,
 }
 """Functions of an arm, its targets and settings, by the names under "cell"."""
 

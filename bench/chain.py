@@ -86,8 +86,10 @@ class Chain:
 
     def middle(self) -> Array:
         """Of the limits, (dof,); 0 of a joint that has none."""
-        middle = (self.lower + self.upper) / 2.0
-        return np.asarray(np.where(np.isfinite(middle), middle, 0.0))
+        limited = np.isfinite(self.lower) & np.isfinite(self.upper)
+        middle = np.zeros(self.dof)
+        middle[limited] = (self.lower[limited] + self.upper[limited]) / 2.0
+        return middle
 
     def _moved(self, i: int, values: Array) -> Array:
         """Z(q) of joint i for many values, (N, 4, 4)."""

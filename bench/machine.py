@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 MEASURING = (
     "analytic/cells.py",
+    "analytic/counted.py",
     "arms.py",
     "branches.py",
     "cells.py",
@@ -48,6 +49,7 @@ MEASURING = (
     "paper/paired.py",
     "paper/seeds_shown.py",
     "requests.py",
+    "restarts.py",
     "seed_makers.py",
     "tips.py",
     "whole_body/cells.py",
@@ -82,6 +84,18 @@ def load_text(some_facts: dict[str, Any]) -> str:
     """How much else ran, if that is known: one process measures."""
     load = some_facts.get("load")
     return "" if load is None else f", load average {load:g} of 15 minutes"
+
+
+def others_text(some_facts: dict[str, Any]) -> str:
+    """What other processes took, as bench.others saw it; "" where that is not known."""
+    facts = some_facts.get("others")
+    if not facts:
+        return ""
+    return (
+        f" Beside the timed jobs other processes took {facts['mean']:g} cores in the "
+        f"mean, {facts['most']:g} at most ({facts['job']}); it had waited for them for "
+        f"{facts['waited_s']:g} s."
+    )
 
 
 def cpu_name() -> str:

@@ -16,7 +16,6 @@ import numpy as np
 import iksel
 from bench import random_arms
 from bench.branches import (
-    PASSES,
     ROUNDING,
     TOLERANCE,
     branches_by_restarts,
@@ -27,7 +26,7 @@ from bench.lost import lost_of_random
 from bench.moves import LONGER, along_arcs
 from bench.size import Job, Size
 from bench.targets import make_targets
-from bench.timing import least_times, time_calls
+from bench.timing import PASSES, least_times, time_calls
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

@@ -194,8 +194,9 @@ def _made(part: dict[str, Any]) -> str:
         f"there already not counted), with IKSel {facts['iksel']} (lanes: "
         f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
         f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
-        f"{facts['system']}{machine.load_text(facts)}. Times move from machine to "
-        "machine; what is compared here was timed in the same run."
+        f"{facts['system']}{machine.load_text(facts)}."
+        f"{machine.others_text(facts)} Times move from machine to machine; what is "
+        "compared here was timed in the same run."
     )
 
 

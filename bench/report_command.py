@@ -13,6 +13,7 @@ from bench import plan
 from bench.arguments import add_kept
 from bench.arms import RIVAL_ARMS
 from bench.machine import facts, fingerprint, stale
+from bench.others import Others
 from bench.provenance import check
 from bench.report import (
     collect,
@@ -156,15 +157,17 @@ def measured(
         sys.stderr.write(
             "bench: cpp/ or python/ has changed since this iksel was installed\n"
         )
+    others = Others(size.patience_s)
     begin = time.monotonic()
     try:
-        failures = run_jobs(jobs, store, WORK)
+        failures = run_jobs(jobs, store, WORK, others)
     except KeyboardInterrupt:
         sys.stderr.write("bench: interrupted; the same command goes on from here\n")
         return None
     command = " ".join(["python -m bench", *given])
     seconds = time.monotonic() - begin
     report = collect(jobs, store, size, command=command, seconds=seconds)
+    report["machine"]["others"] = others.facts()
     report["failures"] = failures
     for name, reason in failures.items():
         sys.stderr.write(f"bench: {name}: {reason}\n")

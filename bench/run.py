@@ -17,6 +17,7 @@ from bench.progress import Bar
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from bench.others import Others
     from bench.size import Job
     from bench.store import Settings, Store
 
@@ -24,10 +25,13 @@ LIMIT_S = 900.0
 """A worker that takes longer for a cell is ended [s], unless its cells say "hang_s"."""
 
 
-def run_jobs(jobs: list[Job], store: Store, folder: Path) -> dict[str, str]:
+def run_jobs(
+    jobs: list[Job], store: Store, folder: Path, others: Others | None = None
+) -> dict[str, str]:
     """Measure every cell that the store does not have.
 
-    Jobs without times run on all cores at once, the others alone, one by one.
+    Jobs without times run on all cores at once, the others alone, one by one, with
+    `others` when other processes are through.
 
     Returns:
         Why cells failed, by their job and robot; all others are in the store.
@@ -46,7 +50,13 @@ def run_jobs(jobs: list[Job], store: Store, folder: Path) -> dict[str, str]:
             for future in [pool.submit(work, job) for job in jobs if not job.timed]:
                 future.result()
             for job in jobs:
-                if job.timed:
+                if not job.timed:
+                    continue
+                if others is None or all(map(store.has, job.cells)):
+                    work(job)
+                    continue
+                others.wait()
+                with others.beside(job.name):
                     work(job)
         finally:
             # Ctrl-C ends the workers; no others are to be started for what they left.

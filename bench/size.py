@@ -33,6 +33,8 @@ class Size:
     """Poses in a batch."""
     artefact: int
     """Queries looked at for singular samples."""
+    patience_s: float = 30.0
+    """Time that a report waits for other processes to be through, in all [s]."""
     requests: int = 10_000
     """Targets of the requests."""
     restarts: int = 1_000
@@ -101,6 +103,7 @@ QUICK = Size(
     robots=2_000,
     batch=2_000,
     artefact=200,
+    patience_s=0.0,
     requests=500,
     restarts=50,
     no=500,

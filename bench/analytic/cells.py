@@ -25,7 +25,7 @@ from bench.check import (
 )
 from bench.rivals import ENUMERATORS
 from bench.rivals.enumerator import WAYS
-from bench.timing import least_times, mean_median
+from bench.timing import PASSES, least_times, mean_median
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,9 +38,6 @@ if TYPE_CHECKING:
     from bench.rivals.enumerator import Enumerator
     from bench.store import Settings
     from bench.targets import Targets
-
-PASSES = 3
-"""Runs of each way, the ways in turns; of each call the least time counts."""
 
 
 @dataclass(frozen=True)
@@ -72,8 +69,8 @@ def asked(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     ways = [way for way in WAYS if way in rival.requests]
     solver = iksel.Solver(arm.robot)
     if settings["kind"] == "any_rotation":
-        return _noes(solver, goals, _ask(this, ways[:1], settings["limit_s"])[ways[0]])
-    given = _ask(this, ways, settings["limit_s"])
+        return _noes(solver, goals, ask(this, ways[:1], settings["limit_s"])[ways[0]])
+    given = ask(this, ways, settings["limit_s"])
     result = {way: _figures(given[way]) for way in ways}
     if "every" in given:
         result["every"] |= _branches(arm, solver, goals, given["every"])
@@ -82,7 +79,7 @@ def asked(arm: Arm, goals: Targets, settings: Settings) -> dict[str, Any]:
     return result
 
 
-def _ask(this: Asked, ways: Sequence[str], limit_s: float) -> dict[str, Given]:
+def ask(this: Asked, ways: Sequence[str], limit_s: float) -> dict[str, Given]:
     """Each way a few times in turns; one that does not end in time only once."""
 
     def ask(way: str) -> Run:
@@ -97,11 +94,11 @@ def _ask(this: Asked, ways: Sequence[str], limit_s: float) -> dict[str, Given]:
     for way, done in runs.items():
         times = least_times([run.times_ns for run in done])
         answers = done[0].answers[: len(times)]
-        given[way] = Given(times, *_judged(this, way, answers))
+        given[way] = Given(times, *judged_answers(this, way, answers))
     return given
 
 
-def _judged(
+def judged_answers(
     this: Asked, way: str, answers: Sequence[Sequence[Array]]
 ) -> tuple[list[Array], int]:
     """The right ones of each target, and how many are wrong.

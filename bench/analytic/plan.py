@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 KINDS = ("uniform", "any_rotation")
 """Targets that can all be reached, and targets of which many cannot."""
+COUNTED = ("IKSel", "ssik", "frankik", "IKFast")
+"""Solvers that can be asked for so many answers of a redundant arm."""
+NUMBERS = (16, 64)
+"""How many they are asked for."""
 HANG_S = 300.0
 """A solver that takes longer for a cell is ended [s]."""
 BUILDING = ("ssik", "ssik, no rescue")
@@ -44,17 +48,34 @@ def asked_cell(robot: str, name: str, kind: str, size: Size) -> Settings:
     return cell if name in BUILDING else {**cell, "hang_s": HANG_S}
 
 
+def counted_arms() -> list[str]:
+    """The built-in robots of seven joints."""
+    return [name for name in iksel.robot_names() if iksel.robot_info(name).dof == 7]
+
+
+def counted_cell(robot: str, name: str, size: Size) -> Settings:
+    """One solver asked for so many answers to reachable targets."""
+    cell = asked_cell(robot, name, KINDS[0], size)
+    return {**cell, "cell": "counted", "numbers": list(NUMBERS)}
+
+
 def analytic_jobs(size: Size, robots: Collection[str] | None = None) -> list[Job]:
     """A process for each solver: what ends one, no other feels."""
     wanted = arms() if robots is None else robots
-    return [
-        Job(
-            job_name(name),
-            "analytic",
-            [asked_cell(robot, name, kind, size) for robot in wanted for kind in KINDS],
-        )
+    asked = {
+        job_name(name): [
+            asked_cell(robot, name, kind, size) for robot in wanted for kind in KINDS
+        ]
         for name in ENUMERATORS
-    ]
+    }
+    redundant = [robot for robot in counted_arms() if robot in wanted]
+    counted = {
+        f"{name}, so many answers": [
+            counted_cell(robot, name, size) for robot in redundant
+        ]
+        for name in COUNTED
+    }
+    return [Job(name, "analytic", cells) for name, cells in (asked | counted).items()]
 
 
 def job_name(name: str) -> str:

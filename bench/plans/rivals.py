@@ -31,9 +31,9 @@ def batch_cell(robot: str, name: str, threads: int, size: Size) -> Settings:
     return {**cell, "cell": "batch", "rival": name, "threads": threads}
 
 
-def every_cell(robot: str, size: Size) -> Settings:
+def every_cell(robot: str, threads: int, size: Size) -> Settings:
     """All branches of many poses, pose by pose: beside EAIK's batches."""
-    return {**batch_cell(robot, "IKSel", 1, size), "every": True}
+    return {**batch_cell(robot, "IKSel", threads, size), "every": True}
 
 
 BATCHES = (("ur3_wrs", "EAIK"), *((robot, "IKSel") for robot in RIVAL_ARMS))
@@ -61,7 +61,7 @@ def rival_jobs(size: Size) -> list[Job]:
         for robot, name in BATCHES
         for threads in BATCH_THREADS
     ]
-    batches.append(every_cell(BATCHES[0][0], size))
+    batches += [every_cell(BATCHES[0][0], threads, size) for threads in BATCH_THREADS]
     jobs.append(Job("batches", "rivals", batches))
     if level := other_level():
         cells = [

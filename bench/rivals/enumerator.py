@@ -45,6 +45,8 @@ class Enumerator(Rival):
 
     numerical: ClassVar[bool] = False
     """Whether it iterates to one answer from a start."""
+    of_samples: ClassVar[bool] = False
+    """Whether the number that `so_many` takes is of samples, not of answers."""
 
     def __init__(self, arm: Arm) -> None:
         """Make it for a robot; UnsupportedError if it cannot be."""
@@ -53,6 +55,14 @@ class Enumerator(Rival):
     @abstractmethod
     def ways(self, arm: Arm) -> dict[str, Request]:
         """Some of WAYS. A solver that only knows all has "every" alone."""
+
+    def so_many(self, arm: Arm, number: int) -> Request:
+        """Some of all answers.
+
+        Raises:
+            UnsupportedError: It cannot be asked for so many.
+        """
+        raise UnsupportedError(f"{self.name} cannot give {number} of {arm.name}")
 
     def ask(self, way: str, targets: Targets, near: Array, limit_s: float) -> Run:
         """Time one way on all targets; no further call after `limit_s`."""

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from bench.rivals.base import UnsupportedError
-from bench.rivals.enumerator import Enumerator, Request, fit_frames
+from bench.rivals.enumerator import Enumerator, Frames, Request, fit_frames
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import ModuleType
 
     from bench.arms import Arm
@@ -45,6 +46,7 @@ class Frankik(Enumerator):
         f"ik_sample_q7 over {TURN_DEG:g} degrees with full_ik; one: {FEW} samples, all "
         f"and nearest: {MANY}; of the FR3 it has limits of its own, which are narrower"
     )
+    of_samples = True
     samples: ClassVar[dict[str, dict[str, Any]]] = {
         "one": {"sample_size": FEW, "sample_interval": TURN_DEG, "full_ik": True},
         "every": {"sample_size": MANY, "sample_interval": TURN_DEG, "full_ik": True},
@@ -52,18 +54,12 @@ class Frankik(Enumerator):
 
     def ways(self, arm: Arm) -> dict[str, Request]:
         """One: the first of the samples; all and nearest: of all samples."""
-        module = importlib.import_module("frankik")
-        is_fr3 = _is_fr3(arm, module)
-        # Its forward kinematics has the hand, its inverse has not.
-        frames = fit_frames(arm, lambda q: np.asarray(module.fk(q) @ NO_HAND))
+        frames, sample_q7 = _known(arm)
         sample, sample_all = (
-            functools.partial(module.ik_sample_q7, is_fr3=is_fr3, **self.samples[way])
+            functools.partial(sample_q7, **self.samples[way])
             for way in ("one", "every")
         )
-
-        def home(pose: Array, near: Array) -> tuple[Any, ...]:
-            del near
-            return (frames.target(pose),)
+        home = _home(frames)
 
         def posture(pose: Array, near: Array) -> tuple[Any, ...]:
             return frames.target(pose), np.ascontiguousarray(near)
@@ -84,6 +80,12 @@ class Frankik(Enumerator):
             "nearest": Request(posture, nearest, chosen),
         }
 
+    def so_many(self, arm: Arm, number: int) -> Request:
+        """So many samples, as for all."""
+        frames, sample_q7 = _known(arm)
+        words = self.samples["every"] | {"sample_size": number}
+        return Request(_home(frames), functools.partial(sample_q7, **words), _usable)
+
 
 class FrankikDefaults(Frankik):
     """The same as it is called without arguments but `full_ik` for all."""
@@ -94,6 +96,25 @@ class FrankikDefaults(Frankik):
         "one": {},
         "every": {"full_ik": True},
     }
+
+
+def _known(arm: Arm) -> tuple[Frames, Callable[..., Any]]:
+    """Its frames of an arm, and its function with that arm's limits."""
+    module = importlib.import_module("frankik")
+    is_fr3 = _is_fr3(arm, module)
+    # Its forward kinematics has the hand, its inverse has not.
+    frames = fit_frames(arm, lambda q: np.asarray(module.fk(q) @ NO_HAND))
+    return frames, functools.partial(module.ik_sample_q7, is_fr3=is_fr3)
+
+
+def _home(frames: Frames) -> Callable[[Array, Array], tuple[Any, ...]]:
+    """What it is asked without a posture."""
+
+    def prepare(pose: Array, near: Array) -> tuple[Any, ...]:
+        del near
+        return (frames.target(pose),)
+
+    return prepare
 
 
 def _usable(returned: Any) -> list[Array]:

@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bench.rivals.base import UnsupportedError
-from bench.rivals.enumerator import Enumerator, Request, fit_frames
+from bench.rivals.enumerator import Enumerator, Frames, Request, fit_frames
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import ModuleType
+
     from bench.arms import Arm
     from bench.chain import Array
 
@@ -34,28 +37,13 @@ class IkFast(Enumerator):
         "limits; limits are not its business"
     )
     keeps_limits = False
+    of_samples = True
 
     def ways(self, arm: Arm) -> dict[str, Request]:
         """All branches of all samples, or until one is inside the limits."""
-        if arm.chain.dof != 7:
-            raise UnsupportedError(f"PR2's right arm only; not {arm.name}")
-        module = importlib.import_module("pr2_ikfast.ikRight")
-        chain = arm.chain
-        lower, upper = chain.lower.tolist(), chain.upper.tolist()
-        step = (upper[FREE] - lower[FREE]) / SAMPLES
-        free = [[TORSO, lower[FREE] + (i + 0.5) * step] for i in range(SAMPLES)]
-        frames = fit_frames(arm, lambda q: _pose(module.get_fk([TORSO, *q.tolist()])))
-
-        def prepare(pose: Array, near: Array) -> tuple[Any, ...]:
-            del near
-            target = frames.target(pose)
-            return target[:3, :3].tolist(), target[:3, 3].tolist()
-
-        def every(rotation: Any, position: Any) -> list[list[float]]:
-            found: list[list[float]] = []
-            for values in free:
-                found += module.get_ik(rotation, position, values) or ()
-            return found
+        module, frames = _known(arm)
+        lower, upper = arm.chain.lower.tolist(), arm.chain.upper.tolist()
+        free = _free_values(lower[FREE], upper[FREE], SAMPLES)
 
         def one(rotation: Any, position: Any) -> list[list[float]]:
             for values in free:
@@ -65,9 +53,46 @@ class IkFast(Enumerator):
             return []
 
         return {
-            "one": Request(prepare, one, _arms),
-            "every": Request(prepare, every, _arms),
+            "one": Request(_prepare(frames), one, _arms),
+            "every": self.so_many(arm, SAMPLES),
         }
+
+    def so_many(self, arm: Arm, number: int) -> Request:
+        """All branches of so many samples."""
+        module, frames = _known(arm)
+        free = _free_values(arm.chain.lower[FREE], arm.chain.upper[FREE], number)
+
+        def every(rotation: Any, position: Any) -> list[list[float]]:
+            found: list[list[float]] = []
+            for values in free:
+                found += module.get_ik(rotation, position, values) or ()
+            return found
+
+        return Request(_prepare(frames), every, _arms)
+
+
+def _known(arm: Arm) -> tuple[ModuleType, Frames]:
+    """Its module, and its frames of the arm."""
+    if arm.chain.dof != 7:
+        raise UnsupportedError(f"PR2's right arm only; not {arm.name}")
+    module = importlib.import_module("pr2_ikfast.ikRight")
+    frames = fit_frames(arm, lambda q: _pose(module.get_fk([TORSO, *q.tolist()])))
+    return module, frames
+
+
+def _free_values(lower: float, upper: float, samples: int) -> list[list[float]]:
+    """Torso and free joint, evenly spaced."""
+    step = (upper - lower) / samples
+    return [[TORSO, float(lower + (i + 0.5) * step)] for i in range(samples)]
+
+
+def _prepare(frames: Frames) -> Callable[[Array, Array], tuple[Any, ...]]:
+    def prepare(pose: Array, near: Array) -> tuple[Any, ...]:
+        del near
+        target = frames.target(pose)
+        return target[:3, :3].tolist(), target[:3, 3].tolist()
+
+    return prepare
 
 
 def _inside(q: list[float], lower: list[float], upper: list[float]) -> bool:

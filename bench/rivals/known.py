@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import iksel
@@ -32,11 +33,7 @@ class Iksel(Enumerator):
 
     def ways(self, arm: Arm) -> dict[str, Request]:
         """All three."""
-        solver = iksel.Solver(arm.robot, IkselDefault.options())
-
-        def alone(pose: Array, near: Array) -> tuple[Any, ...]:
-            del near
-            return (pose,)
+        solver = _solver(arm)
 
         def both(pose: Array, near: Array) -> tuple[Any, ...]:
             return pose, near
@@ -48,10 +45,28 @@ class Iksel(Enumerator):
             return [result.q] if result.success else []
 
         return {
-            "one": Request(alone, solver.solve, single),
-            "every": Request(alone, solver.solve_all, lambda all_: list(all_.q)),
+            "one": Request(_alone, solver.solve, single),
+            "every": Request(_alone, solver.solve_all, _every),
             "nearest": Request(both, nearest, single),
         }
+
+    def so_many(self, arm: Arm, number: int) -> Request:
+        """The option max."""
+        call = functools.partial(_solver(arm).solve_all, max=number)
+        return Request(_alone, call, _every)
+
+
+def _solver(arm: Arm) -> iksel.Solver:
+    return iksel.Solver(arm.robot, IkselDefault.options())
+
+
+def _alone(pose: Array, near: Array) -> tuple[Any, ...]:
+    del near
+    return (pose,)
+
+
+def _every(solutions: iksel.Solutions) -> list[Array]:
+    return list(solutions.q)
 
 
 class Branches(Enumerator):

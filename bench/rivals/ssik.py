@@ -57,10 +57,6 @@ class Ssik(Enumerator):
         """All three; the posture is its q_seed."""
         solve = functools.partial(_artifact(arm).solve, allow_rescue=self.rescue)
 
-        def pose_alone(pose: Array, near: Array) -> tuple[Any, ...]:
-            del near
-            return (np.ascontiguousarray(pose),)
-
         def both(pose: Array, near: Array) -> tuple[Any, ...]:
             return np.ascontiguousarray(pose), np.ascontiguousarray(near)
 
@@ -70,10 +66,18 @@ class Ssik(Enumerator):
         one = functools.partial(solve, max_solutions=1)
         every = functools.partial(solve, enumerate_windings=False)
         return {
-            "one": Request(pose_alone, one, _values),
-            "every": Request(pose_alone, every, _values),
+            "one": Request(_pose_alone, one, _values),
+            "every": Request(_pose_alone, every, _values),
             "nearest": Request(both, nearest, _values),
         }
+
+    def so_many(self, arm: Arm, number: int) -> Request:
+        """Its max_solutions, one whole turn a branch."""
+        words = {"max_solutions": number, "enumerate_windings": False}
+        solve = functools.partial(
+            _artifact(arm).solve, allow_rescue=self.rescue, **words
+        )
+        return Request(_pose_alone, solve, _values)
 
 
 class SsikWithoutRescue(Ssik):
@@ -82,6 +86,11 @@ class SsikWithoutRescue(Ssik):
     name = "ssik, no rescue"
     settings = "the same with allow_rescue=False: a no is said without its search"
     rescue = False
+
+
+def _pose_alone(pose: Array, near: Array) -> tuple[Any, ...]:
+    del near
+    return (np.ascontiguousarray(pose),)
 
 
 def _values(returned: Any) -> list[Array]:

@@ -12,6 +12,7 @@ from bench.machine import load_text
 from bench.markdown import NONE, mean_median, table
 from bench.rivals import ENUMERATORS
 from bench.rivals.enumerator import WAYS
+from bench.sections import counted
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -46,6 +47,7 @@ def text(view: View) -> str:
         table(HEADER, _rows(view)),
         NOTES,
         _ahead(view),
+        counted.text(view),
         _refused(view),
         _settings(view),
     ]
@@ -83,7 +85,7 @@ def wrong(view: View) -> list[str]:
                 for what in ("wrong", "missed")
                 if figures[what]
             ]
-    return lines
+    return lines + counted.wrong(view)
 
 
 def _ways(cell: dict[str, Any]) -> dict[str, Any]:
@@ -193,28 +195,55 @@ def _counted(ways: dict[str, Any], what: str) -> str:
 
 
 def _ahead(view: View) -> str:
-    """Where a solver takes less than IKSel in the mean, and what it leaves out."""
+    """Where a solver takes less than IKSel, by mean or by median."""
     lines = []
     for robot in view.robots("asked"):
         ours = _asked(view, robot, OURS)
         for name in ENUMERATORS:
+            if name == OURS:
+                continue
             for way, theirs in _asked(view, robot, name).items():
-                least = ours.get(way, {}).get("us")
-                if not theirs["us"] or not least or theirs["us"][0] >= least[0]:
-                    continue
-                notes = [
-                    f"{theirs[k]:,} {k}" for k in ("missed", "longer") if theirs.get(k)
-                ]
-                if way == "every":
-                    notes.append(
-                        f"branches {_branches(theirs)} to {_branches(ours[way])}"
-                    )
-                share = f"{theirs['us'][0] / least[0]:.2f} of IKSel's mean"
-                tail = f" ({', '.join(notes)})" if notes else ""
-                lines.append(f"- `{robot}`, {WORDS[way]}: {name} {share}{tail}")
+                told = _less(theirs, ours.get(way, {}))
+                if told:
+                    lines.append(f"- `{robot}`, {WORDS[way]}: {name} {told}")
     if not lines:
-        return "IKSel's means are the least of each arm."
-    return "\n".join(["Where IKSel's mean is not the least of an arm:", "", *lines])
+        return "IKSel's means and medians are the least of each arm."
+    title = (
+        "Where IKSel's mean or median is not the least of an arm; of *all* these are "
+        "of the time a right answer, as solvers give different numbers of them:"
+    )
+    return "\n".join([title, "", *lines])
+
+
+def _less(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
+    """How much less a solver takes, and what it leaves out; "" if it takes more.
+
+    The median is told where its order is not the mean's.
+    """
+    if not theirs["us"] or not ours.get("us"):
+        return ""
+    if not theirs.get("branches", 1) or not ours.get("branches", 1):
+        return ""
+    share = _answers(ours) / _answers(theirs)
+    mean, median = (
+        share * their / our for their, our in zip(theirs["us"], ours["us"], strict=True)
+    )
+    if min(mean, median) >= 1.0:
+        return ""
+    told = f"{mean:.2f} of IKSel's mean"
+    if (mean < 1.0) != (median < 1.0):
+        told += f", {median:.2f} of its median"
+    notes = [f"{theirs[k]:,} {k}" for k in ("missed", "longer") if theirs.get(k)]
+    if "branches" in theirs:
+        notes.append(f"branches {_branches(theirs)} to {_branches(ours)}")
+    return told + (f" ({', '.join(notes)})" if notes else "")
+
+
+def _answers(figures: dict[str, Any]) -> float:
+    """Right answers a call where all are asked for; else one, whatever it is."""
+    if "branches" not in figures:
+        return 1.0
+    return float(figures["branches"]) / float(figures["count"])
 
 
 def _asked(view: View, robot: str, name: str) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bench import branches
+from bench import branches, restarts
 from bench.bounds import at_least, share_text
 from bench.markdown import microseconds, percent, table
 from bench.plans import requests as plan
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from bench.view import View
 
 RESTARTS_PERCENT = 99.5
-"""Poses whose branch count is to agree with the restarts'."""
+"""Poses of which no branch that restarts find is to be lacking."""
 
 
 def text(view: View) -> str:
@@ -40,7 +40,7 @@ def _verdict(part: int, whole: int, enough: float) -> str:
         else "missed"
     )
     proven = share_text(part, whole)
-    return f"{percent(part, whole)} ({proven}; {enough} aimed at: {word})"
+    return f"{percent(part, whole)} % ({proven}; {enough} % aimed at: {word})"
 
 
 def _moves(view: View) -> list[str]:
@@ -86,14 +86,28 @@ def _restarts(view: View) -> list[str]:
         cell = view.get(plan.request_cell("restarts", robot, view.size.restarts))
         if cell is None:
             continue
+        count, again = cell["count"], cell["again"]
+        complete = _verdict(count - cell["lacking"], count, RESTARTS_PERCENT)
+        added = f"{cell['added']:,} more branches in {cell['more']:,} poses"
+        if again["branches"]:
+            added += (
+                f" (of {again['branches']:,} of these {restarts.MORE_RESTARTS:,} "
+                f"restarts find {again['found']:,})"
+            )
         lines.append(
-            f"- `{robot}`, {cell['count']:,} poses, {cell['branches']:,} solutions: as "
-            f"many as {branches.RESTARTS:,} random restarts find in "
-            f"{_verdict(cell['agrees'], cell['count'], RESTARTS_PERCENT)} %, more in "
-            f"{cell['more']}, fewer in {cell['fewer']}, wrong {cell['wrong']}; mean "
+            f"- `{robot}`, {count:,} poses, {cell['branches']:,} branches: none of "
+            f"{branches.RESTARTS:,} random restarts' is lacking in {complete}; "
+            f"{added}; wrong or the same twice {cell['wrong']:,}; mean "
             f"{microseconds(cell['mean_us'])} µs."
         )
-    return ["### Branches beside random restarts", "\n".join(lines)] if lines else []
+    if not lines:
+        return []
+    note = (
+        "Of sets, not of their sizes; both are judged by bench's own forward "
+        f"kinematics and the limits, branches are {branches.APART:g} rad apart in some "
+        "joint:"
+    )
+    return ["### Branches beside random restarts", note, "\n".join(lines)]
 
 
 PATH_TITLES = {

@@ -14,6 +14,7 @@ from bench.plans.shared import BESIDE_LEVEL, at_level
 from bench.rivals import RIVALS, timed_in_cpp
 from bench.sections import batches, target_counts
 from bench.size import SEED
+from bench.timing import PASSES, SHORT_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -130,7 +131,11 @@ def _times(view: View, kind: str) -> str:
     def show(cell: dict[str, Any]) -> str:
         return f"{microseconds(cell['mean_us'])} ({microseconds(cell['p99_us'])})"
 
-    return table(_header("solver"), _cells(view, kind, show))
+    note = (
+        f"Of each call the least time of {PASSES} passes, where the first takes less "
+        f"than {SHORT_S:g} s."
+    )
+    return table(_header("solver"), _cells(view, kind, show)) + "\n\n" + note
 
 
 def _rights(view: View, kind: str) -> str:

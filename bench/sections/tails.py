@@ -10,35 +10,31 @@ from typing import TYPE_CHECKING, Any
 from bench.arguments import add_count, add_kept, add_robots
 from bench.arms import RIVAL_ARMS
 from bench.machine import load_text
-from bench.markdown import NONE, microseconds, percent, table
+from bench.markdown import NONE, microseconds, table
+from bench.sections import slowest
+from bench.sections.slowest import results_of
 from bench.size import FULL, QUICK
 from bench.tails.beside import BATCH, CONDITIONS, THREADS, TOUCHED_MB
 from bench.tails.fresh import LATER
 from bench.tails.plan import (
-    KINDS,
     beside_cell,
-    calls_cell,
     fresh_cell,
     tail_jobs,
     threads_cell,
 )
-from bench.tails.slowest import AGAIN, OTHERS, SLOWEST
 from bench.view import View, tell_section
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Collection
+    from collections.abc import Collection
 
     from bench.size import Job, Size
-    from bench.store import Settings
     from bench.view import Report
-
-KIND_WORDS = {KINDS[0]: "reachable", KINDS[1]: "random rotations"}
 
 
 def text(view: View) -> str:
     """The whole section; empty where there are no results."""
-    parts = [*_slowest(view), *_beside(view), *_threads(view), *_fresh(view)]
+    parts = [*slowest.parts(view), *_beside(view), *_threads(view), *_fresh(view)]
     if not parts:
         return ""
     facts = view.machine("tails")
@@ -51,80 +47,6 @@ def text(view: View) -> str:
     return "\n\n".join(["## What means hide", conditions, *parts])
 
 
-def _of(
-    view: View, cell: str, settings: Callable[[str], Settings]
-) -> list[tuple[str, dict[str, Any]]]:
-    """The results of a cell by robot."""
-    found = [(robot, view.get(settings(robot))) for robot in view.robots(cell)]
-    return [(robot, result) for robot, result in found if result is not None]
-
-
-def _slowest(view: View) -> list[str]:
-    rows, lines = [], []
-    for kind in KINDS:
-        cells = _of(view, "tail_calls", partial(calls_cell, kind=kind, size=view.size))
-        for robot, cell in cells:
-            settings = calls_cell(robot, kind, view.size)
-            name = f"`{robot}`, {KIND_WORDS[kind]}"
-            came, least = cell["came"], cell["least"]
-            rows.append(
-                [
-                    f"{name}, {settings['count']:,}",
-                    *(
-                        microseconds(came[of])
-                        for of in ("mean_us", "median_us", "p99_us")
-                    ),
-                    *_pair("p999_us", came, least),
-                    *_pair("max_us", came, least),
-                    percent(cell["by_machine"], cell["again"], 0),
-                    " / ".join(f"{stage:.2f}" for stage in cell["stages"]),
-                ]
-            )
-            lines.append(f"- {name}: {_call(cell['slowest'][0])}")
-            lines.append(f"  - again: {_call(cell['slowest_again'][0])}")
-    if not rows:
-        return []
-    header = [
-        "targets",
-        "mean",
-        "median",
-        "p99",
-        "p99.9",
-        "of the targets",
-        "worst",
-        "of the targets",
-        "slow by the machine %",
-        "query / seeds / iterate",
-    ]
-    note = (
-        f"The slowest {100 * SLOWEST:g} % of the calls are called {AGAIN} times again, "
-        "and those that then are the slowest; "
-        "*of the targets*: with the least time of each, so without interruptions, "
-        "other work and data that left the caches. *Slow by the machine*: of these "
-        f"calls those that took more than {OTHERS:g} times their least. Stages: means "
-        "inside C++ over reachable targets, since single ones do not tell theirs. Then "
-        "the slowest call as it came, and the one that is the slowest again and again:"
-    )
-    title = "### The slowest calls, µs"
-    return [title, table(header, rows), note, "\n".join(lines)]
-
-
-def _pair(what: str, came: dict[str, float], least: dict[str, float]) -> list[str]:
-    return [microseconds(came[what]), microseconds(least[what])]
-
-
-def _call(call: dict[str, Any]) -> str:
-    """One call and its cause."""
-    cause = "machine" if call["us"] > OTHERS * call["again_us"] else "target"
-    answer = "yes" if call["answer"] else f"no ({call['proof']})"
-    seed, number = call["where"]
-    return (
-        f"{microseconds(call['us'])} µs, again {microseconds(call['again_us'])}: by "
-        f"the {cause}; {answer}, {call['attempts']} attempts, {call['iterations']} "
-        f"steps; target {number} of seed {seed}"
-    )
-
-
 def _beside(view: View) -> list[str]:
     rows = [
         [
@@ -135,7 +57,7 @@ def _beside(view: View) -> list[str]:
                 for name in CONDITIONS
             ),
         ]
-        for robot, cell in _of(
+        for robot, cell in results_of(
             view, "tail_beside", partial(beside_cell, size=view.size)
         )
     ]
@@ -168,7 +90,7 @@ def _threads(view: View) -> list[str]:
                 for name in THREADS
             ),
         ]
-        for robot, cell in _of(
+        for robot, cell in results_of(
             view, "tail_threads", partial(threads_cell, size=view.size)
         )
     ]
@@ -185,7 +107,7 @@ def _threads(view: View) -> list[str]:
 
 
 def _fresh(view: View) -> list[str]:
-    cells = _of(view, "tail_fresh", fresh_cell)
+    cells = results_of(view, "tail_fresh", fresh_cell)
     if not cells:
         return []
     rows = [

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <map>
+#include <string>
+
 #include "bindings.hpp"
 
 namespace iksel::python {
@@ -13,6 +16,16 @@ Evaluation evaluate_solver(const Solver& solver, std::size_t targets, std::uint6
                            std::size_t touched) {
   const Progress report = make_progress(progress);
   return without_gil([&] { return evaluate(solver, targets, seed, stages, report, touched); });
+}
+
+std::map<std::string, double> stage_times(const Solver& solver, const Pose& pose) {
+  StageTimes times;
+  without_gil([&] { static_cast<void>(solver.solve(pose, {}, &times)); });
+  constexpr double kMicroseconds = 1e-3;
+  return {{"query_us", times.query * kMicroseconds},
+          {"rank_us", times.rank * kMicroseconds},
+          {"iterate_us", times.iterate * kMicroseconds},
+          {"reselect_us", times.reselect * kMicroseconds}};
 }
 
 double time_kdl(const Robot& robot) {
@@ -40,6 +53,10 @@ Args:
     touched: bytes of other memory that are touched before each timed solve, not counted; at most
         2**30. From some times the processor's caches on, a solve finds nothing in them, as in a
         control loop beside other work.)");
+  def(m, "stage_times", "solver, pose", fn<&stage_times>,
+      "Where the time of one solve of a pose goes [us]: finding seeds or what is known of the "
+      "solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again "
+      "(reselect_us). Evaluation has the means of many.");
   def(m, "time_kdl_fk_jacobian", "robot", fn<&time_kdl>);
   def(m, "simd_level", "", [] { return std::string(simd_level()); });
 }

@@ -99,6 +99,7 @@ from iksel_cpp import (
     UrdfError,
     evaluate,
     simd_level,
+    stage_times,
     time_kdl_fk_jacobian,
 )
 
@@ -209,5 +210,6 @@ __all__ = [
     "robot_names",
     "rotation_vector_from_pose",
     "simd_level",
+    "stage_times",
     "time_kdl_fk_jacobian",
 ]

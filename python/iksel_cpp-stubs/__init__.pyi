@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 import os
 import typing
-__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'DhConvention', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'time_kdl_fk_jacobian']
+__all__: list[str] = ['AngleUnitWarning', 'ArcEnd', 'Axis', 'BatchResult', 'Cause', 'Contact', 'CoupledLimit', 'Database', 'DatabaseCorruptError', 'DatabaseError', 'DatabaseIoError', 'DatabaseMismatchError', 'DatabaseOptions', 'DhConvention', 'Diagnosis', 'Error', 'Evaluation', 'GrowthStop', 'InvalidArgumentError', 'Iteration', 'JointType', 'KeyScheme', 'Kinematics', 'Lanes', 'LinkTree', 'LinkTreeJoint', 'MimicCurve', 'MoveNorm', 'Objective', 'ObjectiveKind', 'Obstacle', 'Paper', 'PathResult', 'Proof', 'RIGID_TOLERANCE', 'Ranking', 'Reselection', 'Result', 'Robot', 'RobotSpheres', 'RotationDifference', 'RotationKey', 'Sampling', 'Scale', 'Scene', 'Selector', 'SelfMotion', 'SelfMotionArc', 'SelfMotionEnd', 'SignatureError', 'SolutionOrder', 'Solutions', 'Solver', 'SolverOptions', 'Status', 'Structure', 'StructureKind', 'Task', 'TaskFrame', 'Tracker', 'UnknownNameError', 'UrdfError', 'check_pose', 'evaluate', 'grid_counts', 'mend_xml', 'orthonormalized', 'pose_error', 'pose_matrices', 'rigid_deviation', 'simd_level', 'stage_times', 'time_kdl_fk_jacobian']
 class AngleUnitWarning(UserWarning):
     """
     Angles that look like degrees were given where radians are meant.
@@ -3017,6 +3017,10 @@ def rigid_deviation(pose: numpy.typing.ArrayLike | typing.Any) -> numpy.typing.N
 def simd_level() -> str:
     """
     The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The environment variable IKSEL_SIMD forces one. Raises InvalidArgumentError if it is not to be had.
+    """
+def stage_times(solver: Solver, pose: numpy.typing.ArrayLike | typing.Any) -> dict[str, float]:
+    """
+    Where the time of one solve of a pose goes [us]: finding seeds or what is known of the solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again (reselect_us). Evaluation has the means of many.
     """
 def time_kdl_fk_jacobian(robot: Robot) -> float:
     """

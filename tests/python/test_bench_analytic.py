@@ -13,8 +13,18 @@ import pytest
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
 from bench import command, report_command, run
-from bench.analytic import cells
-from bench.analytic.plan import KINDS, analytic_jobs, arms, asked_cell, job_name
+from bench.analytic import cells, counted
+from bench.analytic.plan import (
+    COUNTED,
+    KINDS,
+    NUMBERS,
+    analytic_jobs,
+    arms,
+    asked_cell,
+    counted_arms,
+    counted_cell,
+    job_name,
+)
 from bench.arms import BENCH_ARMS, load_arm
 from bench.markdown import NONE
 from bench.rivals import ENUMERATORS
@@ -24,11 +34,14 @@ from bench.rivals.dh import dh_table
 from bench.rivals.enumerator import WAYS, Enumerator, Request, fit_frames
 from bench.rivals.opw import opw_form
 from bench.sections import analytic
+from bench.sections import counted as section
 from bench.settings import targets_of
 from bench.size import FULL, QUICK, Job
 from bench.store import Store
 from bench.timing import time_calls
 from bench.view import View
+
+import iksel
 
 SEED = 7
 SIX = ["cvr038", "ur3", "irb120", "xarm6", "gen3_6dof", "crx10ia"]
@@ -215,6 +228,112 @@ class TestCells:
             assert figures["missed"] == 0 or defaults
 
 
+class Sampled(Enumerator):
+    """Every other sample is an answer, of which half are the same."""
+
+    name = "sampled"
+    distribution = "numpy"
+    settings = "none"
+    of_samples = True
+
+    def ways(self, arm):
+        del arm
+        return {}
+
+    def so_many(self, arm, number):
+        solver = iksel.Solver(arm.robot)
+
+        def call(pose):
+            found = list(solver.solve_all(pose, max=max(1, number // 4)).q)
+            return [*found, *found]
+
+        return Request(lambda pose, near: (pose,), call, list)
+
+
+class TestCounted:
+    @pytest.mark.parametrize("name", counted_arms())
+    def test_iksel_has_so_many(self, name):
+        settings = counted_cell(name, "IKSel", QUICK)
+        cell = counted.counted(load_arm(name), targets_of(settings), settings)
+        for number in NUMBERS:
+            figures = cell[str(number)]
+            assert figures["taken"] == number
+            assert figures["wrong"] == figures["missed"] == 0
+            assert figures["answers"] <= number * figures["count"]
+            assert figures["fewer"] <= 0.3 * figures["count"]
+
+    def test_samples_are_as_many_as_are_needed(self, monkeypatch):
+        """Each answer counts once, however often it is given."""
+        monkeypatch.setitem(counted.ENUMERATORS, "sampled", Sampled)
+        settings = counted_cell("panda", "sampled", QUICK) | {"count": 4}
+        cell = counted.counted(load_arm("panda"), targets_of(settings), settings)
+        for number in NUMBERS:
+            figures = cell[str(number)]
+            assert figures["taken"] == 4 * number
+            assert figures["answers"] == number * figures["count"]
+
+    def test_what_has_no_number_says_so(self):
+        arm = load_arm("irb120")
+        with pytest.raises(UnsupportedError, match="cannot give 16"):
+            Half(arm).so_many(arm, 16)
+
+    def test_the_verdict_is_of_the_figures(self):
+        def cell(name, *means, missed=0):
+            settings = counted_cell("panda", name, QUICK)
+            result = {"structure": "swept"}
+            for number, mean in zip(NUMBERS, means, strict=True):
+                result[str(number)] = {
+                    "taken": 2 * number,
+                    "count": 10,
+                    "us": [mean, 0.5 * mean],
+                    "answers": 10 * number - missed,
+                    "fewer": missed,
+                    "missed": missed,
+                    "wrong": 0,
+                }
+            return {"settings": settings, "result": result}
+
+        cells_ = [cell("IKSel", 30.0, 125.0), cell("frankik", 45.0, 50.0, missed=5)]
+        view = View({"size": vars(QUICK), "cells": cells_})
+        text = section.text(view)
+        assert (
+            "16 answers in at most 40 µs in the mean were aimed at; within on " in text
+        )
+        assert "within on `panda` (30.0).\n" in text
+        assert "above on `panda` (125, 1.25 times; swept)." in text
+        assert "| 10 | 45.0 (22.5) | 15.5 (32) | 2.90 | 5, 5 |" in text
+        ahead = "- `panda`, 64: frankik 0.40 of IKSel's mean, 0.40 of its median; fewer"
+        assert ahead in text
+        assert "`panda`, 16: frankik" not in text
+        assert section.wrong(view) == []
+        assert section.wrong(
+            View({**view.report, "cells": [cell("IKSel", 1, 1, missed=1)]})
+        )
+        assert section.text(View({**view.report, "cells": []})) == ""
+
+
+class TestLess:
+    """Where a solver takes less, by mean or by median, and of all branches by each."""
+
+    OURS = {"us": [10.0, 10.0], "branches": 640, "count": 10}  # noqa: RUF012
+
+    def test_more_answers_in_more_time_are_less_each(self):
+        theirs = {"us": [15.0, 15.0], "branches": 1_280, "count": 10}
+        told = analytic._less(theirs, self.OURS)
+        assert told == "0.75 of IKSel's mean (branches 128.0 to 64.0)"
+
+    def test_fewer_answers_in_less_time_are_not(self):
+        theirs = {"us": [6.0, 6.0], "branches": 320, "count": 10}
+        assert analytic._less(theirs, self.OURS) == ""
+
+    def test_a_median_of_another_order_is_told(self):
+        theirs = {"us": [20.0, 1.0], "missed": 3}
+        told = analytic._less(theirs, {"us": [10.0, 10.0]})
+        assert told == "2.00 of IKSel's mean, 0.10 of its median (3 missed)"
+        assert analytic._less(theirs, {"us": None}) == ""
+        assert analytic._less(theirs, {"us": [30.0, 0.5]}).startswith("0.67 of IKSel's")
+
+
 class TestCommand:
     def test_prints_one_table(self, capsys, monkeypatch, tmp_path):
         monkeypatch.setattr(report_command, "WORK", tmp_path)
@@ -228,8 +347,12 @@ class TestCommand:
     def test_every_arm_and_solver_is_planned(self):
         jobs = analytic_jobs(FULL)
         assert len({job.name for job in jobs}) == len(jobs)
-        asked = [(cell["rival"], cell["robot"]) for job in jobs for cell in job.cells]
-        assert set(asked) == set(itertools.product(ENUMERATORS, arms()))
+        asked = {"asked": set(), "counted": set()}
+        for job in jobs:
+            for cell in job.cells:
+                asked[cell["cell"]].add((cell["rival"], cell["robot"]))
+        assert asked["asked"] == set(itertools.product(ENUMERATORS, arms()))
+        assert asked["counted"] == set(itertools.product(COUNTED, counted_arms()))
         assert set(BENCH_ARMS) <= set(arms())
 
     def test_what_ends_or_is_absent_is_a_row(self):

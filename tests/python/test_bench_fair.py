@@ -34,6 +34,7 @@ from bench.paper.paired import paired, rotation_vectors
 from bench.plans import rivals
 from bench.plans.shared import at_level
 from bench.rivals import RIVALS
+from bench.rivals.base import Run, least_run
 from bench.sections import choices as choices_section
 from bench.sections import cut_offs, fastest, target_counts
 from bench.sections import rivals as rivals_section
@@ -225,14 +226,37 @@ class TestFair:
         assert cut_offs.enough(cell) == "999"
         assert cut_offs.enough(cell | {"right": 998}).startswith("never (99.80")
 
-    def test_all_branches_beside_all(self):
+    @pytest.mark.parametrize("threads", rivals.BATCH_THREADS)
+    def test_all_branches_beside_all(self, threads):
         """The batch of all branches has those of solve_all, and no fewer."""
         size = replace(QUICK, batch=20)
-        cell = cells.batch(rivals.every_cell("ur3_wrs", size))
+        settings = rivals.every_cell("ur3_wrs", threads, size)
+        cell = cells.batch(settings)
         solver = iksel.Solver(load_arm("ur3_wrs").robot)
-        poses = targets_of(rivals.every_cell("ur3_wrs", size)).poses
+        poses = targets_of(settings).poses
         assert cell["branches"] == sum(len(solver.solve_all(pose)) for pose in poses)
         assert cell["right"] == 20
+
+    @pytest.mark.parametrize("threads", [1, 2, 3, 7])
+    def test_parts_on_threads_keep_their_order(self, threads):
+        numbers = list(range(10))
+        assert cells.each(lambda i: i + 1, numbers, threads) == [i + 1 for i in numbers]
+
+    @pytest.mark.parametrize(("first_ns", "passes"), [(5, 3), (int(1e9), 1)])
+    def test_what_is_soon_through_has_the_least_of_its_passes(self, first_ns, passes):
+        """As of the others, so that one interruption is not in a mean."""
+        asked = []
+
+        class Twice:
+            def run(self, targets):
+                asked.append(targets)
+                slow = [3, first_ns][len(asked) == 1]
+                return Run(np.array([slow, 7]), [[len(asked)], []])
+
+        run_ = least_run(Twice(), "targets")
+        assert len(asked) == passes
+        assert list(run_.times_ns) == ([3, 7] if passes > 1 else [first_ns, 7])
+        assert run_.answers == [[1], []]
 
     def test_another_level_has_a_process_of_its_own(self, tmp_path):
         seen = []

@@ -9,6 +9,7 @@ import gc
 import pickle
 import sys
 import threading
+import time
 
 import iksel_cpp as core
 import numpy as np
@@ -348,6 +349,16 @@ def test_evaluation_beside_other_work_solves_the_same(solver):
 def test_evaluation_with_stages(solver):
     outcome = core.evaluate(solver, 200, 3, stages=True)
     assert outcome.iterate_us > 0
+
+
+def test_stages_of_one_solve(solver, poses):
+    """Each is part of a call, and a call has no more than they are together."""
+    begin = time.perf_counter()
+    stages = core.stage_times(solver, poses[0])
+    whole_us = 1e6 * (time.perf_counter() - begin)
+    assert set(stages) == {"query_us", "rank_us", "iterate_us", "reselect_us"}
+    assert min(stages.values()) >= 0
+    assert 0 < sum(stages.values()) <= whole_us
 
 
 def test_kdl_time_is_a_time(robot):

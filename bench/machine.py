@@ -35,6 +35,7 @@ MEASURING = (
     "tails/*.py",
     "learned/data.py",
     "learned/diffusion.py",
+    "learned/errors.py",
     "learned/evaluate.py",
     "learned/flow.py",
     "learned/layers.py",

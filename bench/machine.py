@@ -37,6 +37,7 @@ MEASURING = (
     "tails/*.py",
     "learned/data.py",
     "learned/diffusion.py",
+    "learned/errors.py",
     "learned/evaluate.py",
     "learned/flow.py",
     "learned/layers.py",

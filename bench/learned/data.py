@@ -15,7 +15,8 @@ for C1 were 78.3 and 86.3 % after 9,000 steps, by the middle 79.2 and 87.5 % (2,
 poses). Of an arm with seven joints that answer may lie on a limit, up to which the
 self-motion was followed, and a seed beside it then ends outside; there the label is the
 answer that is farthest from all limits. The paper's own labels, "drawn", are there to
-compare: a model learns all configurations of a pose then.
+compare, with the quaternion that its models see: a model learns all configurations of a
+pose then. For C0 and C1 the report has both.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
-from bench.learned.plan import LABELS
+from bench.learned.plan import INPUTS, OURS
 from bench.settings import WORK
 from bench.size import SEED
 
@@ -38,11 +39,14 @@ if TYPE_CHECKING:
 
     from bench.arms import Arm
     from bench.chain import Array
+    from bench.learned.plan import Recipe
 
     Floats = npt.NDArray[np.float32]
 
 FEATURES = 12
-"""Numbers that a model is given of a pose."""
+"""Numbers that a model is given of a pose: position and rotation."""
+QUATERNION_FEATURES = 7
+"""The same of position and quaternion."""
 TRAIN_SEED = SEED + 1_000
 """Of the poses learned from; the next one is of the curves' poses, and SEED of the
 report's."""
@@ -58,8 +62,9 @@ class Scaling:
     q_std: Floats
 
     def inputs(self, poses: Array) -> Floats:
-        """What a model is given of poses, (N, 4, 4) -> (N, FEATURES)."""
-        return ((features(poses) - self.x_mean) / self.x_std).astype(np.float32)
+        """What a model is given of poses, (N, 4, 4) -> (N, FEATURES or fewer)."""
+        x = features(poses, INPUTS[len(self.x_mean) == QUATERNION_FEATURES])
+        return ((x - self.x_mean) / self.x_std).astype(np.float32)
 
     def joints(self, outputs: Floats) -> Array:
         """Joint values [rad] of a model's outputs, (..., dof)."""
@@ -67,13 +72,16 @@ class Scaling:
         return np.asarray(scaled + self.q_mean)
 
 
-def features(poses: Array) -> Floats:
-    """Position [m] and the nine entries of the rotation, (N, 4, 4) -> (N, FEATURES).
+def features(poses: Array, inputs: str = OURS.inputs) -> Floats:
+    """Position [m] and rotation, (N, 4, 4) -> (N, FEATURES or QUATERNION_FEATURES).
 
-    The entries are smooth in the pose; a quaternion, which the paper uses, jumps where
-    its sign is settled.
+    The entries of the rotation are smooth in the pose; a quaternion, which the paper
+    uses, jumps where its sign is settled.
     """
-    rotations = poses[:, :3, :3].reshape(len(poses), 9)
+    if inputs == "quaternion":
+        rotations = iksel.quaternion_from_pose(poses)
+    else:
+        rotations = poses[:, :3, :3].reshape(len(poses), 9)
     return np.concatenate([poses[:, :3, 3], rotations], axis=1).astype(np.float32)
 
 
@@ -84,12 +92,13 @@ def scaling_of(x: Floats, q: Floats) -> Scaling:
 
 
 def labelled(
-    robot: str, count: int, seed: int, kind: str = LABELS[0]
+    robot: str, count: int, seed: int, recipe: Recipe = OURS
 ) -> tuple[Floats, Floats]:
     """labelled_now, made once and kept in build/bench."""
-    path: Path = WORK / "learned" / f"{robot}-{kind}-{count}-{seed}.npz"
+    name = f"{robot}-{recipe.labels}-{recipe.inputs}-{count}-{seed}.npz"
+    path: Path = WORK / "learned" / name
     if not path.exists():
-        x, q = labelled_now(load_arm(robot), count, seed, kind)
+        x, q = labelled_now(load_arm(robot), count, seed, recipe)
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part.npz")
         np.savez(part, x=x, q=q)
@@ -99,17 +108,17 @@ def labelled(
 
 
 def labelled_now(
-    arm: Arm, count: int, seed: int, kind: str = LABELS[0]
+    arm: Arm, count: int, seed: int, recipe: Recipe = OURS
 ) -> tuple[Floats, Floats]:
-    """Features, (N, FEATURES), and labels [rad], (N, dof), of so many random poses.
+    """Features, (N, ...), and labels [rad], (N, dof), of so many random poses.
 
     The few poses that the solver has no answer for are left out.
     """
     drawn = arm.robot.random_configurations(count, seed)
     poses = arm.robot.fk(drawn)
-    q = drawn if kind == "drawn" else labels(arm, poses)
+    q = drawn if recipe.labels == "drawn" else labels(arm, poses)
     known = np.isfinite(q).all(axis=1)
-    return features(poses[known]), q[known].astype(np.float32)
+    return features(poses[known], recipe.inputs), q[known].astype(np.float32)
 
 
 def labels(arm: Arm, poses: Array) -> Array:

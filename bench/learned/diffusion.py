@@ -39,11 +39,13 @@ class Diffusion(eqx.Module):
     dof: int = eqx.field(static=True)
     steps: int = eqx.field(static=True)
 
-    def __init__(self, dof: int, key: jax.Array, steps: int = 5) -> None:
+    def __init__(
+        self, dof: int, key: jax.Array, steps: int = 5, features: int = FEATURES
+    ) -> None:
         """Random weights; steps of sampling, as the paper has them."""
         self.dof = dof
         self.steps = steps
-        inputs = dof + FEATURES + 2 * FREQUENCIES
+        inputs = dof + features + 2 * FREQUENCIES
         self.network = Mlp(inputs, dof, width=216, depth=6, key=key)
 
     def velocity(self, q_t: jax.Array, x: jax.Array, t: jax.Array) -> jax.Array:

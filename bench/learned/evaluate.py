@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import functools
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
@@ -16,10 +17,11 @@ import numpy as np
 
 import iksel
 from bench.arms import load_arm
-from bench.check import errors, right
+from bench.check import right
 from bench.learned.data import labels
+from bench.learned.errors import batch_errors
 from bench.learned.models import load_weights
-from bench.learned.plan import BESIDE, JUMP, weights_path
+from bench.learned.plan import BESIDE, JUMP, OURS, Recipe, weights_path
 from bench.settings import make_solver, targets_of
 from bench.size import SEED
 from bench.timing import time_calls
@@ -36,10 +38,9 @@ if TYPE_CHECKING:
 
 CHUNK = 500
 """Poses in one call where times do not matter."""
+RECIPE = fields(Recipe)
 LIMIT_S = 120.0
 """No output is begun after so long [s]."""
-STATISTICS = ("mean", "min", "max", "q1", "q3")
-"""Of a batch's errors, as in the paper."""
 
 
 @functools.cache
@@ -127,7 +128,8 @@ def measured(settings: Settings) -> dict[str, Any]:
     Outputs are made one pose a call by the jitted model; the best of a batch is picked
     in that call's time. Answers are judged by bench.check at the paper's tolerances.
     """
-    path = weights_path(settings["robot"], settings["model"])
+    recipe = Recipe(*(settings.get(field.name, field.default) for field in RECIPE))
+    path = weights_path(settings["robot"], settings["model"], recipe)
     if not path.exists():
         return {"unsupported": f"no {path.name}: not trained"}
     model, scaling, facts = load_weights(path)
@@ -149,9 +151,26 @@ def measured(settings: Settings) -> dict[str, Any]:
         call = _one_by_one(arm, model, scaling, model.batch)
         result["best"] = _as_seeds(arm, poses, call)
     q = outputs(model, scaling, poses, model.batch)
-    if model.batch > 1:
+    if recipe != OURS:
+        result["configurations"] = configurations(arm, poses)
+    elif model.batch > 1:
         result["why"] = why(arm, poses, q)
-    return {**result, **_batch_errors(arm, poses, q)}
+    return {**result, **batch_errors(arm, poses, q)}
+
+
+def configurations(arm: Arm, poses: Array) -> float:
+    """How many reach a pose inside the limits, in the mean, whole turns counted."""
+    solver = iksel.Solver(arm.robot)
+    turn = 2.0 * np.pi
+    count = 0
+    for pose in poses:
+        # Of those that differ by whole turns one stands for all.
+        q = np.asarray(solver.solve_all(pose).q) % turn
+        once = np.unique(np.round(np.exp(1j * q), 3), axis=0, return_index=True)[1]
+        highest = np.floor((arm.robot.upper - q[once]) / turn)
+        lowest = np.ceil((arm.robot.lower - q[once]) / turn)
+        count += int(np.prod(highest - lowest + 1.0, axis=1).sum())
+    return count / len(poses)
 
 
 def why(arm: Arm, poses: Array, q: Array) -> dict[str, float]:
@@ -235,30 +254,6 @@ def _as_seeds(
         good = right(arm.chain, poses, np.array(seeds), *tolerances)
         figures["direct_right"] = int(good.sum())
     return figures
-
-
-def _batch_errors(arm: Arm, poses: Array, q: Array) -> dict[str, Any]:
-    """STATISTICS of each batch's errors, (N, count, dof), averaged over the targets."""
-    count = q.shape[1]
-    position, rotation = errors(
-        arm.chain, np.repeat(poses, count, axis=0), q.reshape(-1, q.shape[-1])
-    )
-    return {
-        "position_mm": _statistics(1e3 * position.reshape(-1, count)),
-        "rotation_deg": _statistics(np.degrees(rotation.reshape(-1, count))),
-    }
-
-
-def _statistics(values: Array) -> dict[str, float]:
-    each = (
-        values.mean(axis=1),
-        values.min(axis=1),
-        values.max(axis=1),
-        *np.quantile(values, [0.25, 0.75], axis=1),
-    )
-    return {
-        name: float(part.mean()) for name, part in zip(STATISTICS, each, strict=True)
-    }
 
 
 def read_curve(path: Path) -> list[dict[str, float]]:

@@ -96,11 +96,13 @@ class Flow(eqx.Module):
     couplings: tuple[Coupling, ...]
     dof: int = eqx.field(static=True)
 
-    def __init__(self, dof: int, key: jax.Array, width: int) -> None:
+    def __init__(
+        self, dof: int, key: jax.Array, width: int, features: int = FEATURES
+    ) -> None:
         """Random weights; hidden layers of the blocks are so wide."""
         keys = jax.random.split(key, LAYERS + 1)
         self.dof = dof
-        self.encoder = Mlp(FEATURES + 1, CONTEXT, width=160, depth=3, key=keys[0])
+        self.encoder = Mlp(features + 1, CONTEXT, width=160, depth=3, key=keys[0])
         self.couplings = tuple(Coupling(width, each) for each in keys[1:])
 
     def context(self, x: jax.Array, log_noise: jax.Array) -> jax.Array:

@@ -14,6 +14,7 @@ import jax.numpy as jnp
 
 from bench.learned.data import FEATURES
 from bench.learned.layers import Mlp
+from bench.learned.plan import GAUSSIANS
 
 LEAST_DEVIATION = 0.01
 """Of a component, in units of the labels' own: what is nearer is all the same to the
@@ -31,12 +32,18 @@ class Mdn(eqx.Module):
     dof: int = eqx.field(static=True)
     components: int = eqx.field(static=True)
 
-    def __init__(self, dof: int, key: jax.Array) -> None:
+    def __init__(
+        self,
+        dof: int,
+        key: jax.Array,
+        features: int = FEATURES,
+        components: int = GAUSSIANS,
+    ) -> None:
         """Random weights."""
         self.dof = dof
-        self.components = 8
+        self.components = components
         outputs = self.components * (1 + 2 * dof)
-        self.network = Mlp(FEATURES, outputs, width=208, depth=6, key=key)
+        self.network = Mlp(features, outputs, width=208, depth=6, key=key)
 
     def mixture(self, x: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
         """Log weights (B, K), means (B, K, dof) and deviations (B, K, dof)."""

@@ -11,10 +11,11 @@ import equinox as eqx
 import jax
 import numpy as np
 
-from bench.learned.data import Scaling
+from bench.learned.data import FEATURES, Scaling
 from bench.learned.diffusion import Diffusion
 from bench.learned.flow import Flow
 from bench.learned.mdn import Mdn
+from bench.learned.plan import GAUSSIANS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,20 +55,30 @@ class Facts:
     """Poses learned from."""
     seed: int
     parameters: int
+    gaussians: int = GAUSSIANS
+    """Of an MDN."""
 
 
-def make_model(robot: str, name: str, dof: int, seed: int) -> Any:
-    """A model with random weights.
+def make_model(
+    robot: str,
+    name: str,
+    dof: int,
+    seed: int,
+    *,
+    features: int = FEATURES,
+    gaussians: int = GAUSSIANS,
+) -> Any:
+    """A model with random weights, which is given so many numbers of a pose.
 
     Raises:
         KeyError: No such model.
     """
     key = jax.random.key(seed)
     if name == "diffusion":
-        return Diffusion(dof, key, STEPS.get(robot, 5))
+        return Diffusion(dof, key, STEPS.get(robot, 5), features)
     if name == "flow":
-        return Flow(dof, key, WIDTHS.get(robot, 72))
-    return {"mdn": Mdn}[name](dof, key)
+        return Flow(dof, key, WIDTHS.get(robot, 72), features)
+    return {"mdn": Mdn}[name](dof, key, features, gaussians)
 
 
 def parameters(model: Any) -> int:
@@ -102,11 +113,22 @@ def load_weights(path: Path) -> tuple[Any, Scaling, Facts]:
         facts = Facts(**json.loads(str(file["facts"])))
         scaling = Scaling(**{field.name: file[field.name] for field in fields(Scaling)})
         flat = file["weights"].astype(np.float32)
-    model = make_model(facts.robot, facts.model, len(scaling.q_mean), facts.seed)
-    arrays, rest = eqx.partition(model, eqx.is_array)
-    leaves, tree = jax.tree.flatten(arrays)
-    if sum(leaf.size for leaf in leaves) != len(flat):
-        raise ValueError(f"{path} has {len(flat)} weights, not {parameters(model)}")
+    dof, features = len(scaling.q_mean), len(scaling.x_mean)
+    # Shapes alone: to draw random weights first would take seconds of compiling.
+    model = eqx.filter_eval_shape(
+        make_model,
+        facts.robot,
+        facts.model,
+        dof,
+        facts.seed,
+        features=features,
+        gaussians=facts.gaussians,
+    )
+    shapes, rest = eqx.partition(model, lambda x: isinstance(x, jax.ShapeDtypeStruct))
+    leaves, tree = jax.tree.flatten(shapes)
+    size = sum(leaf.size for leaf in leaves)
+    if size != len(flat):
+        raise ValueError(f"{path} has {len(flat)} weights, not {size}")
     ends = np.cumsum([leaf.size for leaf in leaves])[:-1]
     parts = np.split(flat, ends)
     filled = [

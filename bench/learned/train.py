@@ -3,8 +3,7 @@
 
 Minutes are CPU time of the process: those of a clock while it has a core by itself.
 How many steps they are is measured at the beginning; the learning rate falls as a
-cosine over these. A second call with more minutes goes on where the first one ended,
-on the longer cosine.
+cosine over these. A second call with more minutes goes on, on the longer cosine.
 """
 
 from __future__ import annotations
@@ -25,11 +24,13 @@ import optax
 from bench.learned.data import TRAIN_SEED, Scaling, labelled, scaling_of
 from bench.learned.evaluate import seeds_solved
 from bench.learned.models import Facts, make_model, parameters, save_weights
-from bench.learned.plan import LABELS, weights_path
+from bench.learned.plan import CURVE, OURS, name_of, weights_path
 from bench.settings import WORK
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from bench.learned.plan import Recipe
 
 BATCH = 1024
 PEAK_RATE = 2e-3
@@ -39,8 +40,6 @@ DECAY = 0.999
 """Of the running mean of the weights, which is what is evaluated and kept."""
 STEPS_A_CALL = 100
 SAMPLES = 1_000_000
-CURVE = 500
-"""Poses of a point of the curve."""
 CURVE_POINTS = 12
 SAVED_EVERY_S = 60.0
 
@@ -58,9 +57,8 @@ class State(eqx.Module):
 def rate(step: jax.Array, total: jax.Array) -> jax.Array:
     """Learning rate at a step of so many."""
     rise = jnp.minimum((step + 1) / WARM_UP, 1.0)
-    return (
-        PEAK_RATE * rise * 0.5 * (1.0 + jnp.cos(jnp.pi * jnp.minimum(step / total, 1)))
-    )
+    fall = 0.5 * (1.0 + jnp.cos(jnp.pi * jnp.minimum(step / total, 1)))
+    return PEAK_RATE * rise * fall
 
 
 def optimizer() -> optax.GradientTransformation:
@@ -68,9 +66,9 @@ def optimizer() -> optax.GradientTransformation:
     return optax.chain(optax.clip_by_global_norm(1.0), optax.scale_by_adam(b2=0.99))
 
 
-def first_state(robot: str, name: str, dof: int, seed: int) -> State:
-    """Random weights."""
-    model = make_model(robot, name, dof, seed)
+def first_state(robot: str, name: str, dof: int, seed: int, **sizes: int) -> State:
+    """Random weights; sizes as make_model has them."""
+    model = make_model(robot, name, dof, seed, **sizes)
     arrays = eqx.filter(model, eqx.is_array)
     return State(model, arrays, optimizer().init(arrays), jnp.zeros((), jnp.int32))
 
@@ -114,9 +112,9 @@ def mean_model(state: State) -> Any:
     return eqx.combine(state.mean, eqx.filter(state.model, eqx.is_array, inverse=True))
 
 
-def checkpoint_path(robot: str, name: str, labels: str = LABELS[0]) -> Path:
+def checkpoint_path(robot: str, name: str, recipe: Recipe = OURS) -> Path:
     """Where a training's state is kept."""
-    return WORK / "learned" / f"{robot}_{name}_{labels}.state.npz"
+    return WORK / "learned" / f"{name_of(robot, name, recipe)}.state.npz"
 
 
 @dataclass
@@ -137,7 +135,7 @@ class Training:
     total: int = 0
     """Steps that these are."""
     curve: list[dict[str, float]] = field(default_factory=list)
-    labels: str = LABELS[0]
+    recipe: Recipe = OURS
 
     @property
     def title(self) -> str:
@@ -184,8 +182,8 @@ class Training:
         for _ in range(2):  # the first one compiles
             begin = time.process_time()
             total = jnp.asarray(STEPS_A_CALL)
-            _, loss = train_steps(self.state, self.x, self.q, total, self.seed)
-            loss.block_until_ready()
+            done = train_steps(self.state, self.x, self.q, total, self.seed)
+            jax.block_until_ready(done)
             each = (time.process_time() - begin) / STEPS_A_CALL
         left = max(60.0 * minutes - self.seconds, 0.0)
         self.minutes = minutes
@@ -205,12 +203,13 @@ PROGRESS = ("seconds", "minutes", "total", "curve")
 
 
 def begin_training(
-    robot: str, model: str, seed: int, samples: int, labels: str = LABELS[0]
+    robot: str, model: str, seed: int, samples: int, recipe: Recipe = OURS
 ) -> Training:
     """From random weights."""
     say(f"{robot} {model}: {samples:,} labels, made now unless they are there")
-    x, q = labelled(robot, samples, TRAIN_SEED, labels)
+    x, q = labelled(robot, samples, TRAIN_SEED, recipe)
     scaling = scaling_of(x, q)
+    sizes = {"features": x.shape[1], "gaussians": recipe.gaussians}
     return Training(
         robot,
         model,
@@ -218,8 +217,8 @@ def begin_training(
         scaling,
         jnp.asarray((x - scaling.x_mean) / scaling.x_std),
         jnp.asarray((q - scaling.q_mean) / scaling.q_std),
-        first_state(robot, model, q.shape[1], seed),
-        labels=labels,
+        first_state(robot, model, q.shape[1], seed, **sizes),
+        recipe=recipe,
     )
 
 
@@ -231,14 +230,14 @@ def train(
     *,
     fresh: bool = False,
     samples: int = SAMPLES,
-    labels: str = LABELS[0],
+    recipe: Recipe = OURS,
 ) -> Facts:
     """Train up to so many minutes in all, and write weights and curve.
 
     Goes on from what an earlier call left in build/bench, unless it is to be fresh.
     """
-    training = begin_training(robot, model, seed, samples, labels)
-    path = checkpoint_path(robot, model, labels)
+    training = begin_training(robot, model, seed, samples, recipe)
+    path = checkpoint_path(robot, model, recipe)
     if path.exists() and not fresh:
         training.load(path)
         say(f"{training.title}: goes on from step {training.step:,}")
@@ -271,8 +270,9 @@ def _write(training: Training) -> Facts:
         samples=len(training.x),
         seed=training.seed,
         parameters=parameters(mean),
+        gaussians=training.recipe.gaussians,
     )
-    path = weights_path(training.robot, training.model, training.labels)
+    path = weights_path(training.robot, training.model, training.recipe)
     save_weights(path, mean, training.scaling, facts)
     with path.with_suffix(".csv").open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, training.curve[0], lineterminator="\n")
@@ -283,10 +283,10 @@ def _write(training: Training) -> Facts:
 
 def _bar(training: Training, loss: float) -> str:
     part = min(training.step / max(training.total, 1), 1.0)
-    done = "#" * int(24 * part)
     return (
-        f"\r\033[K[{done:<24}] {part:4.0%} {training.seconds / 60:5.1f} min  "
-        f"{training.title}  step {training.step} of {training.total}, loss {loss:.3f}"
+        f"\r\033[K[{'#' * int(24 * part):<24}] {part:4.0%} "
+        f"{training.seconds / 60:5.1f} min  {training.title}  "
+        f"step {training.step} of {training.total}, loss {loss:.3f}"
     )
 
 

@@ -91,9 +91,13 @@ class Figures:
         """Points of success."""
         return self.rate(better) - self.rate(worse)
 
+    def on(self, i: int) -> Figures:
+        """Those of another robot."""
+        return Figures(self._look, i)
+
     def gain_beyond(self, others: Sequence[int], worse: str, better: str) -> float:
         """How far the gain is above those of other robots."""
-        most = max(Figures(self._look, i).gain(worse, better) for i in others)
+        most = max(self.on(i).gain(worse, better) for i in others)
         return self.gain(worse, better) - most
 
 

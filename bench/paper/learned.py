@@ -49,3 +49,23 @@ LEARNED = {
     },
 }
 """By model and robot; "flow" is the paper's IKFlow, "diffusion" its IKDP."""
+
+Spread = tuple[float, float, float, float]
+"""Of a batch's errors min, max, Q1 and Q3, each the mean over the targets."""
+
+SPREADS: dict[str, dict[str, tuple[Spread, Spread]]] = {
+    "mdn": {},
+    "flow": {
+        "cvr038": ((1.18, 40.51, 3.15, 8.57), (0.77, 25.89, 2.01, 5.11)),
+        "cvrb1213": ((6.51, 355.34, 18.42, 51.90), (1.74, 143.01, 7.27, 41.41)),
+        "ur3_wrs": ((10.43, 393.33, 37.70, 113.38), (15.86, 175.70, 63.69, 141.90)),
+        "irb14050": ((2.98, 155.21, 8.63, 28.41), (0.94, 54.84, 2.62, 8.07)),
+    },
+    "diffusion": {
+        "cvr038": ((4.22, 18.66, 6.73, 10.26), (1.71, 8.65, 2.77, 4.17)),
+        "cvrb1213": ((3.95, 97.11, 9.32, 20.92), (0.72, 62.81, 1.83, 5.58)),
+        "ur3_wrs": ((2.65, 251.16, 7.38, 23.82), (1.40, 143.93, 4.58, 28.84)),
+        "irb14050": ((2.57, 149.21, 7.41, 21.88), (0.68, 67.79, 1.87, 6.07)),
+    },
+}
+"""Positions [mm] and rotations [degrees]; of an MDN, which has one output, none."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from bench.arms import PAPER_ARMS
-from bench.learned.plan import learned_cell, learned_jobs
+from bench.learned.plan import learned_cell, our_jobs
 from bench.seed_makers import MAKERS, Learned
 from bench.size import SEED, Job, Size
 
@@ -100,5 +100,5 @@ def seeding_jobs(size: Size) -> list[Job]:
         Job("IK-Geo, search", "seeds", search),
         Job("IK-Geo, package", "seeds", package),
         *makers,
-        *(replace(job, section="seeds") for job in learned_jobs(size)),
+        *(replace(job, section="seeds") for job in our_jobs(size)),
     ]

@@ -47,11 +47,10 @@ def text(view: View) -> str:
     """The table of claims; empty where there are no results."""
     rows = []
     for claim in CLAIMS:
-        ours = _margins(claim, _ours(view))
+        ours = margins_of(claim, _ours(view))
         if any(margin is not None for margin in ours):
-            rows.append(
-                _line(claim.text, claim.unit, ours, _margins(claim, published_row))
-            )
+            theirs = margins_of(claim, published_row)
+            rows.append(_line(claim.text, claim.unit, ours, theirs))
     for what, unit, ours, theirs in _beyond_the_tables(view):
         if any(margin is not None for margin in ours):
             rows.append(_line(what, unit, ours, theirs))
@@ -90,7 +89,8 @@ def _ours(view: View) -> Callable[[str, int], Row]:
     return look
 
 
-def _margins(claim: Claim, look: Callable[[str, int], Row]) -> Margins:
+def margins_of(claim: Claim, look: Callable[[str, int], Row]) -> Margins:
+    """A claim's margin on each of the paper's robots; None where it has none."""
     found: Margins = []
     for i in ALL:
         try:
@@ -102,20 +102,22 @@ def _margins(claim: Claim, look: Callable[[str, int], Row]) -> Margins:
 
 
 def _line(what: str, unit: str, ours: Margins, theirs: Margins) -> list[str]:
-    shown = []
-    for mine, other in zip(ours, theirs, strict=True):
-        beside = "" if other is None else f" ({signed(other.value)})"
-        shown.append(NONE if mine is None else _shown(mine) + beside)
-    return [f"{what} [{unit}]", *shown, _verdict(ours), _verdict(theirs)]
+    shown = map(beside, ours, theirs)
+    return [f"{what} [{unit}]", *shown, verdict(ours), verdict(theirs)]
 
 
-def _shown(found: Margin) -> str:
-    if found.low == found.high:
-        return signed(found.value)
-    return f"{signed(found.value)} [{signed(found.low)}, {signed(found.high)}]"
+def beside(mine: Margin | None, other: Margin | None) -> str:
+    """A margin with its interval (and the published one)."""
+    if mine is None:
+        return NONE
+    shown = signed(mine.value)
+    if mine.low != mine.high:
+        shown += f" [{signed(mine.low)}, {signed(mine.high)}]"
+    return shown if other is None else f"{shown} ({signed(other.value)})"
 
 
-def _verdict(margins: Margins) -> str:
+def verdict(margins: Margins) -> str:
+    """Whether a claim holds, by its margins on the paper's robots."""
     known = {
         PAPER_ARMS[robot]: found
         for robot, found in zip(ROBOTS, margins, strict=True)

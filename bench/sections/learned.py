@@ -3,20 +3,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from bench.arms import PAPER_ARMS
-from bench.learned.plan import BESIDE, JUMP, MODELS, learned_cell
+from bench.learned.plan import BESIDE, CURVE, JUMP, MINUTES, OURS
 from bench.markdown import NONE, microseconds, percent, signed, table
-from bench.paper.learned import LEARNED
+from bench.sections import learned_causes, learned_claims, learned_errors
+from bench.sections.learned_rows import BESIDE_PUBLISHED, missing, rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from bench.paper.learned import LearnedRow
+    from bench.sections.learned_rows import Row
     from bench.view import View
-
-TITLES = {"mdn": "MDN", "flow": "flow (IKFlow)", "diffusion": "diffusion (IKDP)"}
 
 CONDITIONS = (
     "Models trained here with JAX, each for the minutes and with the parameters that "
@@ -38,67 +34,35 @@ def text(view: View) -> str:
     """The whole section."""
     if not view.has_any("learned"):
         return ""
-    cells = list(_cells(view))
-    tables = (
-        [_success(cells), *_why(cells), _costs(cells), *_curves(cells)] if cells else []
-    )
-    parts = ["## Learned seeds", CONDITIONS, *tables, *_missing(view)]
-    return "\n\n".join(parts)
+    every = rows(view)
+    ours = [row for row in every if row.recipe == OURS]
+    tables = [_success(ours), *_why(ours)] if ours else []
+    if every:
+        tables += [
+            learned_causes.text(every),
+            learned_errors.text(every),
+            learned_claims.text(view),
+        ]
+    if ours:
+        tables += [_costs(ours), *_curves(ours)]
+    absent = missing(view)
+    if absent:
+        tables.append(f"Not run: {'; '.join(absent)}.")
+    parts = ["## Learned seeds", CONDITIONS, *tables]
+    return "\n\n".join(part for part in parts if part)
 
 
-Row = tuple[str, dict[str, Any], "LearnedRow"]
-
-
-def _cells(view: View) -> Iterator[Row]:
-    """Label, result and published row of each model that was measured."""
-    for model in MODELS:
-        for robot, short in PAPER_ARMS.items():
-            cell = view.get(learned_cell(robot, model, view.size))
-            if cell is not None:
-                yield f"{TITLES[model]}, {short}", cell, LEARNED[model][robot]
-
-
-def _missing(view: View) -> list[str]:
-    reasons = [
-        f"{TITLES[model]}, {short}: {reason}"
-        for model in MODELS
-        for robot, short in PAPER_ARMS.items()
-        if (reason := view.why_not(learned_cell(robot, model, view.size)))
+def _success(ours: list[Row]) -> str:
+    lines = [
+        [
+            row.title,
+            percent(row.cell["first"]["direct_right"], row.cell["count"]),
+            *row.beside_published(),
+        ]
+        for row in ours
     ]
-    return [f"Not run: {'; '.join(reasons)}."] if reasons else []
-
-
-def _success(cells: list[Row]) -> str:
-    rows = []
-    for label, cell, published in cells:
-        first, best = cell["first"], cell.get("best")
-        rows.append(
-            [
-                label,
-                percent(first["direct_right"], cell["count"]),
-                f"{cell['position_mm']['mean']:.1f} ({published.position_mm:.1f})",
-                f"{cell['rotation_deg']['mean']:.1f} ({published.rotation_deg:.1f})",
-                _beside(first["right"], cell["count"], published.first),
-                NONE
-                if best is None or published.best is None
-                else _beside(best["right"], cell["count"], published.best),
-            ]
-        )
-    header = [
-        "success %",
-        "direct",
-        "position error, mm",
-        "rotation error, °",
-        "first as seed",
-        "best of 32 as seed",
-    ]
-    return table(header, rows)
-
-
-def _beside(right: int, count: int, published: float) -> str:
-    """Percent (published, difference)."""
-    difference = signed(100.0 * right / count - published)
-    return f"{percent(right, count)} ({published:.2f}, {difference})"
+    header = ["success %", "direct", *BESIDE_PUBLISHED]
+    return table(header, lines)
 
 
 def _to_best(share: float, published: float) -> str:
@@ -120,20 +84,20 @@ WHY = (
 )
 
 
-def _why(cells: list[Row]) -> list[str]:
+def _why(ours: list[Row]) -> list[str]:
     rows = [
         [
-            label,
+            row.title,
             f"{why['singular']:.2f}",
             f"{why['regular']:.2f}",
             f"{why['at_jumps']:.2f} ({why['jumps']:.1f})",
             f"{why['elsewhere']:.2f}",
-            _to_best(why["ranked"], published.best),
+            _to_best(why["ranked"], row.published.best),
             f"{why['any']:.2f}",
             f"{why['beside_label']:.2f}",
         ]
-        for label, cell, published in cells
-        if (why := cell.get("why")) and published.best is not None
+        for row in ours
+        if (why := row.cell.get("why")) and row.published.best is not None
     ]
     header = [
         "success %",
@@ -148,13 +112,14 @@ def _why(cells: list[Row]) -> list[str]:
     return [WHY, table(header, rows)] if rows else []
 
 
-def _costs(cells: list[Row]) -> str:
+def _costs(ours: list[Row]) -> str:
     rows = []
-    for label, cell, published in cells:
+    for row in ours:
+        cell, published = row.cell, row.published
         first, best = cell["first"], cell.get("best")
         rows.append(
             [
-                label,
+                row.title,
                 f"{cell['minutes']:.1f}",
                 f"{cell['steps']:,}",
                 f"{cell['parameters']:,}",
@@ -189,27 +154,50 @@ def _time(figures: dict[str, float], published_ms: float) -> str:
     return f"{output} + {solve} ({published_ms:.2f})"
 
 
+CURVES = (
+    f"What more time would bring: success of the seeds on {CURVE} other poses while "
+    "training, the running mean of the weights; whole curves are in "
+    "`bench/learned/weights/*.csv`. While these were trained, the best was still "
+    "picked by poses that may lie outside the limits. In the last column what the last "
+    "half of the training brought, and its bound (95 %)."
+)
+
 PARTS = (0.25, 0.5, 1.0)
 """Of the training, where the curve is shown."""
 
 
-def _curves(cells: list[Row]) -> list[str]:
-    rows = []
-    for label, cell, _ in cells:
-        curve = cell["curve"]
+def _curves(ours: list[Row]) -> list[str]:
+    lines = []
+    for row in ours:
+        curve = row.cell["curve"]
         points = [curve[max(0, round(part * len(curve)) - 1)] for part in PARTS]
-        shown = "best" if "best" in cell else "first"
-        rows.append([f"{label}, {shown}", *(_point(point, shown) for point in points)])
-    header = ["success %", *(f"{part:.0%} of training" for part in PARTS)]
-    return [
-        (
-            "What more time would bring: success of the seeds on 500 other poses while "
-            "training, the running mean of the weights; whole curves are in "
-            "`bench/learned/weights/*.csv`. While these were trained, the best was "
-            "still picked by poses that may lie outside the limits."
-        ),
-        table(header, rows),
+        shown = [_point(point, row.shown) for point in points]
+        lines.append([f"{row.title}, {row.shown}", *shown, row.late_gain_text()])
+    header = [
+        "success %",
+        *(f"{part:.0%} of training" for part in PARTS),
+        "the last half brought",
     ]
+    return [CURVES, table(header, lines), _budgets(ours)]
+
+
+def _budgets(ours: list[Row]) -> str:
+    """Whether more minutes would bring more, as far as the curves show it."""
+    short = [row for row in ours if row.cell["minutes"] < MINUTES]
+    rising = [row.title for row in short if row.late_gain()[0] > row.late_gain()[1]]
+    flat = [row for row in short if row.title not in rising]
+    asked = f"the {MINUTES:g} minutes that `bench train` gives by default"
+    parts = [f"{len(short)} of {len(ours)} had less than {asked}."]
+    if rising:
+        parts.append(f"Still rising by more than chance: {', '.join(rising)}.")
+    if flat:
+        most = max(sum(row.late_gain()) for row in flat)
+        parts.append(
+            f"Of the other {len(flat)} a gain in the last half is not shown, nor that "
+            f"there was none: it is at most {most:.1f} points (95 %). What the minutes "
+            "up to there would bring is not known."
+        )
+    return " ".join(parts)
 
 
 def _point(point: dict[str, float], shown: str) -> str:

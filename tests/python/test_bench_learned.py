@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -19,10 +20,8 @@ import jax.numpy as jnp
 from bench.arms import PAPER_ARMS, load_arm
 from bench.learned import data, evaluate, flow, models, plan, train
 from bench.learned.diffusion import Diffusion, schedule
+from bench.learned.errors import batch_errors
 from bench.learned.mdn import Mdn
-from bench.sections import learned as section
-from bench.size import QUICK
-from bench.view import View
 
 import iksel
 
@@ -37,7 +36,13 @@ WHY = [
     "any",
     "beside_label",
 ]
-MANY = 9_000_000
+REPORTED = [
+    (robot, model, recipe)
+    for robot in PAPER_ARMS
+    for model in plan.MODELS
+    for recipe in plan.recipes(robot, model)
+]
+MANY = 16_000_000
 """Bytes that all committed weights may have."""
 
 
@@ -76,11 +81,27 @@ class TestLabels:
 
     def test_drawn_ones_are_other_configurations_of_the_same_poses(self):
         arm = load_arm("ur3_wrs")
-        features, q = data.labelled_now(arm, 200, SEED, "drawn")
+        features, q = data.labelled_now(arm, 200, SEED, plan.Recipe("drawn"))
         assert np.abs(data.features(arm.robot.fk(q)) - features).max() < 1e-6
         same, nearest = data.labelled_now(arm, 200, SEED)
         assert np.array_equal(features, same)
         assert np.mean(np.abs(q - nearest).max(axis=1) > 1e-3) > 0.5
+
+    @pytest.mark.parametrize("inputs", plan.INPUTS)
+    def test_inputs_tell_the_rotation(self, inputs):
+        arm = load_arm("ur3_wrs")
+        recipe = plan.Recipe("drawn", inputs)
+        x, q = data.labelled_now(arm, 200, SEED, recipe)
+        poses = arm.robot.fk(q)
+        if inputs == "quaternion":
+            assert (x[:, 3] >= 0.0).all()
+            rotations = iksel.pose_from_quaternion(x[:, :3], x[:, 3:])[:, :3, :3]
+        else:
+            rotations = x[:, 3:].reshape(-1, 3, 3)
+        assert np.abs(rotations - poses[:, :3, :3]).max() < 1e-5
+        scaling = data.scaling_of(x, q)
+        again = scaling.inputs(poses) * scaling.x_std + scaling.x_mean
+        assert np.abs(again - x).max() < 1e-4
 
     def test_scaling_goes_there_and_back(self):
         features, q = data.labelled_now(load_arm("ur3_wrs"), 200, SEED)
@@ -190,6 +211,17 @@ class TestWeights:
         again, *_ = models.load_weights(tmp_path / "b.npz")
         assert np.array_equal(again.outputs(x, key, 2), after)
 
+    @pytest.mark.parametrize("name", plan.MODELS)
+    def test_of_other_inputs(self, tmp_path, name):
+        few = data.QUATERNION_FEATURES
+        model = models.make_model("cvr038", name, 6, SEED, features=few)
+        scaling = data.Scaling(np.zeros(few), np.ones(few), np.zeros(6), np.ones(6))
+        models.save_weights(tmp_path / "a.npz", model, scaling, self.facts(name))
+        read, *_ = models.load_weights(tmp_path / "a.npz")
+        x = jax.random.normal(jax.random.key(SEED), (5, few))
+        outputs = [m.outputs(x, jax.random.key(0), 2) for m in (model, read)]
+        assert np.abs(outputs[0] - outputs[1]).max() < 0.02
+
     def test_of_another_architecture(self, tmp_path):
         scaling = data.Scaling(np.zeros(12), np.ones(12), np.zeros(6), np.ones(6))
         model = models.make_model("cvr038", "mdn", 6, SEED)
@@ -246,8 +278,9 @@ class TestTraining:
     def test_other_labels_leave_the_committed_weights(self, tmp_path, monkeypatch):
         monkeypatch.setattr(plan, "WEIGHTS", tmp_path / "committed")
         monkeypatch.setattr(plan, "WORK", tmp_path)
-        train.train("cvr038", "mdn", 1e-3, SEED, samples=500, labels="drawn")
-        assert (tmp_path / "learned" / "cvr038_mdn_drawn.npz").exists()
+        other = plan.Recipe("drawn", "rotation")
+        train.train("cvr038", "mdn", 1e-3, SEED, samples=500, recipe=other)
+        assert (tmp_path / "learned" / "cvr038_mdn_drawn_rotation.npz").exists()
         assert not (tmp_path / "committed").exists()
 
     def test_rate(self):
@@ -293,6 +326,37 @@ class TestEvaluation:
         pair = np.stack([turned, q + 0.01])
         assert evaluate.best(robot, pair, robot.fk(q)) == 1
 
+    @pytest.mark.parametrize("robot", ["cvr038", "cvrb1213"])
+    def test_configurations_are_all_that_reach(self, robot):
+        """Beside all turns of each joint of every branch, each counted once."""
+        arm = load_arm(robot)
+        solver = iksel.Solver(arm.robot)
+        poses = arm.robot.fk(arm.robot.random_configurations(20, SEED))
+        turns = 2.0 * np.pi * np.array(list(itertools.product([-1, 0, 1], repeat=6)))
+        counts = []
+        for pose in poses:
+            every = (solver.solve_all(pose).q[:, None] + turns).reshape(-1, 6)
+            inside = every[arm.chain.within_limits(every)]
+            counts.append(len(np.unique(inside.round(3), axis=0)))
+        assert evaluate.configurations(arm, poses) == pytest.approx(np.mean(counts))
+
+    def test_errors(self):
+        arm = load_arm("cvr038")
+        q = arm.robot.random_configurations(40, SEED).reshape(10, 4, 6)
+        poses = arm.robot.fk(q[:, 2])
+        figures = batch_errors(arm, poses, q)["position_mm"]
+        position = np.linalg.norm(
+            arm.chain.fk(q.reshape(-1, 6))[:, :3, 3].reshape(10, 4, 3)
+            - poses[:, None, :3, 3],
+            axis=-1,
+        )
+        assert figures["min"] == pytest.approx(0.0, abs=1e-6)
+        assert figures["max"] == pytest.approx(1e3 * position.max(axis=1).mean())
+        assert figures["deviation"] == pytest.approx(1e3 * position.mean(axis=1).std())
+        assert figures["first"][0] == pytest.approx(1e3 * position[:, 0].min())
+        assert figures["first"][2] == pytest.approx(1e3 * np.median(position[:, 0]))
+        assert figures["first"][-1] == pytest.approx(1e3 * position[:, 0].max())
+
     def test_why(self):
         arm = load_arm("cvr038")
         q = arm.robot.random_configurations(100, SEED)
@@ -312,19 +376,19 @@ class TestEvaluation:
 )
 class TestCommitted:
     def test_all_are_there_and_small(self):
-        paths = {
-            plan.weights_path(robot, model)
-            for robot in PAPER_ARMS
-            for model in plan.MODELS
-        }
+        paths = {plan.weights_path(*each) for each in REPORTED}
         assert set(plan.WEIGHTS.glob("*.npz")) == paths
         assert sum(path.stat().st_size for path in paths) < MANY
 
-    @pytest.mark.parametrize("model", plan.MODELS)
-    @pytest.mark.parametrize("robot", PAPER_ARMS)
-    def test_are_what_their_names_say(self, robot, model):
-        path = plan.weights_path(robot, model)
+    @pytest.mark.parametrize(
+        ("robot", "model", "recipe"),
+        [pytest.param(*each, id=plan.name_of(*each)) for each in REPORTED],
+    )
+    def test_are_what_their_names_say(self, robot, model, recipe):
+        path = plan.weights_path(robot, model, recipe)
         _, scaling, facts = models.load_weights(path)
+        count = {"rotation": data.FEATURES, "quaternion": data.QUATERNION_FEATURES}
+        assert len(scaling.x_mean) == count[recipe.inputs]
         assert (facts.robot, facts.model) == (robot, model)
         assert len(scaling.q_mean) == load_arm(robot).chain.dof
         curve = evaluate.read_curve(path.with_suffix(".csv"))
@@ -335,33 +399,3 @@ class TestCommitted:
         model, scaling, _ = models.load_weights(plan.weights_path("cvr038", "mdn"))
         solved = evaluate.seeds_solved("cvr038", model, scaling, SEED, 500)
         assert solved["first"] > 83.0
-
-
-def test_section():
-    cells = [cell for job in plan.learned_jobs(QUICK) for cell in job.cells]
-    assert len(cells) == 12
-    figures = {"right": 5, "direct_right": 0, "output_us": 1.0, "solve_us": 2.0}
-    errors = dict.fromkeys(evaluate.STATISTICS, 1.0)
-    result = {
-        "count": 10,
-        "minutes": 1.0,
-        "steps": 100,
-        "parameters": 9,
-        "bytes": 1000,
-        "curve": [{"minutes": 1.0, "steps": 100.0, "first": 50.0, "best": 60.0}],
-        "first": figures,
-        "best": figures,
-        "why": dict.fromkeys((*WHY, "beside_label"), 97.5),
-        "position_mm": errors,
-        "rotation_deg": errors,
-    }
-    entries = [{"settings": cell, "result": result} for cell in cells[1:]]
-    entries.append({"settings": cells[0], "result": {"unsupported": "no jax"}})
-    nothing = section.text(View({"size": vars(QUICK), "cells": entries[-1:]}))
-    assert "MDN, C0: no jax" in nothing
-    assert "MDN, C1: not measured" in nothing
-    shown = section.text(View({"size": vars(QUICK), "cells": entries}))
-    assert "MDN, C0: no jax" in shown
-    assert "| diffusion (IKDP), IRB | 0.00 | 1.0 (21.9) | 1.0 (7.3) |" in shown
-    assert "50.00 (97.59, \N{MINUS SIGN}47.59)" in shown
-    assert "| 97.50 | 97.50 (97.5) | 97.50 | 97.50 (\N{MINUS SIGN}0.09) |" in shown

@@ -73,7 +73,7 @@ class Size:
 
 FULL = Size(
     paper=10_000,
-    figure=1_000,
+    figure=500,
     figure_attempts=(1, 2, 3, 5, 7, 10, 15, 20),
     cvt_scales=("small", "medium"),
     rivals={

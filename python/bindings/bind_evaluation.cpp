@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <map>
-#include <string>
-
 #include "bindings.hpp"
 
 namespace iksel::python {
@@ -18,18 +15,11 @@ Evaluation evaluate_solver(const Solver& solver, std::size_t targets, std::uint6
   return without_gil([&] { return evaluate(solver, targets, seed, stages, report, touched); });
 }
 
-std::map<std::string, double> stage_times(const Solver& solver, const Pose& pose) {
-  StageTimes times;
-  without_gil([&] { static_cast<void>(solver.solve(pose, {}, &times)); });
-  constexpr double kMicroseconds = 1e-3;
-  return {{"query_us", times.query * kMicroseconds},
-          {"rank_us", times.rank * kMicroseconds},
-          {"iterate_us", times.iterate * kMicroseconds},
-          {"reselect_us", times.reselect * kMicroseconds}};
-}
-
-double time_kdl(const Robot& robot) {
-  return without_gil([&] { return time_kdl_fk_jacobian(robot); });
+py::dict stage_times(const Solver& solver, const Pose& pose) {
+  StageTimes ns;
+  without_gil([&] { static_cast<void>(solver.solve(pose, {}, &ns)); });
+  return py::dict("query_us"_a = ns.query / 1e3, "rank_us"_a = ns.rank / 1e3,
+                  "iterate_us"_a = ns.iterate / 1e3, "reselect_us"_a = ns.reselect / 1e3);
 }
 
 }  // namespace
@@ -57,7 +47,8 @@ Args:
       "Where the time of one solve of a pose goes [us]: finding seeds or what is known of the "
       "solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again "
       "(reselect_us). Evaluation has the means of many.");
-  def(m, "time_kdl_fk_jacobian", "robot", fn<&time_kdl>);
+  def(m, "time_kdl_fk_jacobian", "robot",
+      [](const Robot& robot) { return without_gil([&] { return time_kdl_fk_jacobian(robot); }); });
   def(m, "simd_level", "", [] { return std::string(simd_level()); });
 }
 

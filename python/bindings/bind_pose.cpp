@@ -68,11 +68,15 @@ py::array_t<double> rigid_deviations(const PoseLike& value) {
   return out;
 }
 
+DoubleArray checked(const PoseLike& pose, const std::string& name) {
+  return map_poses(as_matrices(pose, name.c_str()), name,
+                   [](const Pose& given, const char* of) { return check_pose(given, of); });
+}
+
 /// Row i of the result: the error between poses[i] and targets[i].
 py::array_t<double> pose_errors(const PoseLike& target, const PoseLike& pose) {
-  const auto check = [](const Pose& given, const char* name) { return check_pose(given, name); };
-  const DoubleArray targets = map_poses(as_matrices(target, "target"), "target", check);
-  const DoubleArray poses = map_poses(as_matrices(pose, "pose"), "pose", check);
+  const DoubleArray targets = checked(target, "target");
+  const DoubleArray poses = checked(pose, "pose");
   if (targets.ndim() != poses.ndim() ||
       !std::equal(targets.shape(), targets.shape() + targets.ndim(), poses.shape())) {
     throw_wrong_shape("pose", "as many poses as targets, shape " + shape_text(targets), poses);
@@ -91,15 +95,6 @@ py::array_t<double> pose_errors(const PoseLike& target, const PoseLike& pose) {
   return out;
 }
 
-py::object pose_matrices(const PoseLike& pose, const std::string& name) {
-  return to_matrices(pose, name.c_str());
-}
-
-DoubleArray checked(const PoseLike& pose, const std::string& name) {
-  return map_poses(as_matrices(pose, name.c_str()), name,
-                   [](const Pose& given, const char* of) { return check_pose(given, of); });
-}
-
 DoubleArray orthonormal(const PoseLike& pose) {
   return map_poses(as_matrices(pose, "pose"), "pose",
                    [](const Pose& given, const char* of) { return orthonormalized(given, of); });
@@ -114,7 +109,9 @@ void bind_pose(py::module_& m) {
   def(m, "check_pose", "pose, name='pose'", fn<&checked>);
   def(m, "orthonormalized", "pose", fn<&orthonormal>);
   def(m, "rigid_deviation", "pose", fn<&rigid_deviations>);
-  def(m, "pose_matrices", "pose, name='pose'", fn<&pose_matrices>,
+  def(
+      m, "pose_matrices", "pose, name='pose'",
+      [](const PoseLike& pose, const std::string& name) { return to_matrices(pose, name.c_str()); },
       "Poses in one of the forms that as_pose of iksel lists as matrices (..., 4, 4), not checked; "
       "what is none of them as it is.");
 }

@@ -62,12 +62,6 @@ Raises:
   def_equal(cls);
 }
 
-/// From the system's source of randomness.
-std::uint64_t fresh_seed() {
-  std::random_device device;
-  return (std::uint64_t{device()} << 32) | device();
-}
-
 std::vector<StoredPose> as_tools(py::handle value) {
   std::vector<StoredPose> tools;
   for (const Pose& tool : to_poses(as_poses(value, "tcps"))) {
@@ -210,7 +204,8 @@ BoolOrArray within_limits(const Robot& self, const ArrayLike& q) {
 
 py::array_t<double> random_configurations(const Robot& self, std::size_t n,
                                           const std::optional<std::uint64_t>& seed) {
-  const std::uint64_t number = seed ? *seed : fresh_seed();
+  std::random_device device;
+  const std::uint64_t number = seed ? *seed : (std::uint64_t{device()} << 32) | device();
   return to_array(
       without_gil([&] { return self.random_configurations(n, number, interruptible()); }));
 }

@@ -3018,7 +3018,7 @@ def simd_level() -> str:
     """
     The instruction set whose lanes solve on this machine: avx512, avx2, sse2, neon or scalar. The environment variable IKSEL_SIMD forces one. Raises InvalidArgumentError if it is not to be had.
     """
-def stage_times(solver: Solver, pose: numpy.typing.ArrayLike | typing.Any) -> dict[str, float]:
+def stage_times(solver: Solver, pose: numpy.typing.ArrayLike | typing.Any) -> dict[str, typing.Any]:
     """
     Where the time of one solve of a pose goes [us]: finding seeds or what is known of the solutions (query_us), ranking (rank_us), iterating (iterate_us) and choosing seeds again (reselect_us). Evaluation has the means of many.
     """

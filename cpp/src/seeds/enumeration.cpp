@@ -80,7 +80,8 @@ void Enumeration::take(const Pose& Y, int lane, bool wants_all) {
   double bound = pack_.error[lane];
   bool is_sure = bound < lanes::kVague && pack_.worst[lane] >= 0;
   if (beyond > 0 || (wants_all && !is_sure)) is_sure = is_regular(lane, bound);
-  if (is_sure ? beyond > bound : is_nominal_ && is_enclosed_outside(lane)) return;
+  if (is_sure && beyond > bound) return;
+  if (!is_sure && beyond > 0 && is_nominal_ && is_enclosed_outside(lane)) return;
   if (is_sure && beyond > 0 && is_nominal_ && is_beyond(Y, q)) return;
   certain_ = certain_ && is_sure && !(beyond > 0);
   certain_but_for_limits_ = certain_but_for_limits_ && is_sure;

@@ -191,7 +191,8 @@ def _made(part: dict[str, Any]) -> str:
     facts = part["machine"]
     return (
         f"Made by `{part['command']}` in {part['seconds']} s (results that were "
-        f"there already not counted), with IKSel {facts['iksel']} (lanes: "
+        "there already, and what ssik builds once, not counted), with IKSel "
+        f"{facts['iksel']} (lanes: "
         f"{facts['simd']}) at commit {facts['commit']}, Python {facts['python']}, "
         f"numpy {facts['numpy']}, on {facts['cpu']}, {facts['cores']} cores, "
         f"{facts['system']}{machine.load_text(facts)}."

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench import plan
+from bench.analytic.plan import BUILDING
 from bench.arguments import add_kept
-from bench.arms import RIVAL_ARMS
+from bench.arms import RIVAL_ARMS, load_arm
 from bench.machine import facts, fingerprint, stale
 from bench.others import Others
 from bench.provenance import check
@@ -23,7 +24,7 @@ from bench.report import (
     render,
     save_report,
 )
-from bench.rivals import ENUMERATORS, RIVALS
+from bench.rivals import ENUMERATORS, RIVALS, ssik
 from bench.run import run_jobs
 from bench.settings import WORK
 from bench.size import FULL, QUICK
@@ -157,6 +158,7 @@ def measured(
         sys.stderr.write(
             "bench: cpp/ or python/ has changed since this iksel was installed\n"
         )
+    build(jobs)
     others = Others(size.patience_s)
     begin = time.monotonic()
     try:
@@ -172,6 +174,13 @@ def measured(
     for name, reason in failures.items():
         sys.stderr.write(f"bench: {name}: {reason}\n")
     return report
+
+
+def build(jobs: list[Job]) -> None:
+    """Make what solvers need once, as programs are compiled: no part of the report."""
+    cells = [cell for job in jobs for cell in job.cells]
+    for name in sorted({c["robot"] for c in cells if c.get("rival") in BUILDING}):
+        ssik.build(load_arm(name))
 
 
 def _rest(report: Report, sections: Collection[str]) -> Report:

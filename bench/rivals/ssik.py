@@ -97,8 +97,19 @@ def _values(returned: Any) -> list[Array]:
     return [np.asarray(solution.q) for solution in returned]
 
 
+def build(arm: Arm) -> None:
+    """Make what an arm needs, if it is none that ssik refuses and it is not there."""
+    with contextlib.suppress(UnsupportedError):
+        _made(arm)
+
+
 def _artifact(arm: Arm) -> ModuleType:
-    """The module that is built for an arm, once for its URDF and the version."""
+    """The module that is built for an arm."""
+    return _module(_made(arm) / MADE)
+
+
+def _made(arm: Arm) -> Path:
+    """Where it is, built once for its URDF and the version."""
     if arm.chain.dof not in {6, 7}:
         raise UnsupportedError(f"6 or 7 joints only; {arm.name} has {arm.chain.dof}")
     key = hashlib.sha256(f"{Ssik.version()} {arm.urdf}".encode()).hexdigest()[:12]
@@ -108,7 +119,7 @@ def _artifact(arm: Arm) -> ModuleType:
         part = folder.with_name(f"{folder.name}.{os.getpid()}.part")
         _build(arm, part)
         part.rename(folder)
-    return _module(folder / MADE)
+    return folder
 
 
 def _check_class(arm: Arm) -> None:

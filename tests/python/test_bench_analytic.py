@@ -12,7 +12,7 @@ import pytest
 
 pytest.importorskip("bench", reason="the benchmarks are in the repository only")
 
-from bench import command, report_command, run
+from bench import command, plan, report_command, run
 from bench.analytic import cells, counted
 from bench.analytic.plan import (
     COUNTED,
@@ -458,3 +458,14 @@ def test_loops_take_joints_without_limits(name):
     for figures in cell.values():
         assert figures["count"] == 10
         assert figures["wrong"] == figures["missed"] == 0
+
+
+def test_what_ssik_builds_is_no_part_of_a_report(monkeypatch):
+    """It is built before the clock of a report begins, once for each arm."""
+    built = []
+    monkeypatch.setattr(
+        report_command.ssik, "build", lambda arm: built.append(arm.name)
+    )
+    jobs = plan.plan(QUICK, ["ur3", "panda"], ["analytic"], ["ssik"])
+    report_command.build(jobs)
+    assert built == sorted({"ur3", "panda"})

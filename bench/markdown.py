@@ -19,6 +19,12 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
+def text_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of words: every column is aligned left."""
+    lines = ["| " + " | ".join(line) + " |" for line in (header, *rows)]
+    return "\n".join([lines[0], "|---" * len(header) + "|", *lines[1:]])
+
+
 def anchor(title: str) -> str:
     """What GitHub and MyST call a heading in links."""
     kept = re.sub(r"[^\w\- ]", "", title.strip().lower())

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import iksel
-from bench.markdown import listed
+from bench.markdown import listed, text_table
 
 if TYPE_CHECKING:
     from bench.view import View
@@ -41,13 +41,11 @@ def text(view: View) -> str:
     """The whole section; empty where no solver was asked."""
     if not view.has_any("asked"):
         return ""
-    rows = [f"| {solver} | {why} |" for solver, why in SOLVERS.items()]
-    lines = ["| solver | why |", "|---|---|", *rows]
     return "\n\n".join(
         [
             "## What is not compared",
             f"Solvers that could not be had ({TRIED}, tried by hand), or are others:",
-            "\n".join(lines),
+            text_table(["solver", "why"], SOLVERS.items()),
             small_robots(),
         ]
     )

@@ -9,7 +9,7 @@ from bench.analytic.plan import KINDS, asked_cell, job_name
 from bench.branches import NOISE, SAME_MOVE
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from bench.machine import load_text
-from bench.markdown import NONE, mean_median, table
+from bench.markdown import NONE, mean_median, table, text_table
 from bench.rivals import ENUMERATORS
 from bench.rivals.enumerator import WAYS
 from bench.sections import counted
@@ -271,10 +271,10 @@ def _refused(view: View) -> str:
 
 
 def _settings(view: View) -> str:
-    lines = ["| solver | version | settings |", "|---|---|---|"]
+    rows = []
     for name, rival in ENUMERATORS.items():
         version = view.report["versions"].get(name)
         if version is None:
             version = view.report["missing"].get(name, "not asked")
-        lines.append(f"| {name} | {version} | {rival.settings} |")
-    return "\n".join(lines)
+        rows.append([name, version, rival.settings])
+    return text_table(["solver", "version", "settings"], rows)

@@ -10,8 +10,11 @@ from bench.markdown import NONE, bullets, microseconds, percent, table
 from bench.plans import no as plan
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from bench.view import View
 
+Result = dict[str, Any]
 KIND_WORDS = {plan.NO_KINDS[0]: "reachable", plan.NO_KINDS[1]: "random rotations"}
 TIMES_OF_RIVAL = 1.0
 """Times of the analytic solver's mean that all solutions may take."""
@@ -24,24 +27,28 @@ def parts(view: View) -> list[str]:
     return [_branches(view), *_longer(view), *_verdicts(view)]
 
 
-def _branches(view: View) -> str:
-    rows = []
+def _measured(view: View) -> Iterator[tuple[str, str, Result, Result]]:
+    """Robot; the same with the kind of targets; results of `solve_all` and `near`."""
     for robot in view.robots("all_branches"):
         for kind in plan.NO_KINDS:
             every, near = (
                 view.get(plan.branch_cell(cell, robot, kind, view.size))
                 for cell in ("all_branches", "near_branches")
             )
-            if every is None or near is None:
-                continue
-            rows.append(
-                [
-                    f"`{robot}`, {KIND_WORDS[kind]}, {every['count']:,}",
-                    *_every_columns(every),
-                    microseconds(near["mean_us"]),
-                    _smallest(near),
-                ]
-            )
+            if every is not None and near is not None:
+                yield robot, f"`{robot}`, {KIND_WORDS[kind]}", every, near
+
+
+def _branches(view: View) -> str:
+    rows = [
+        [
+            f"{where}, {every['count']:,}",
+            *_every_columns(every),
+            microseconds(near["mean_us"]),
+            _smallest(near),
+        ]
+        for _, where, every, near in _measured(view)
+    ]
     header = [
         "targets",
         f"`solve_all` (p99) beside {plan.BRANCH_RIVAL}",
@@ -78,15 +85,11 @@ NOTES = (
 
 def _longer(view: View) -> list[str]:
     """Why moves of redundant arms are not the least that is known."""
-    lines = []
-    for robot in view.robots("near_branches"):
-        for kind in plan.NO_KINDS:
-            cell = view.get(plan.branch_cell("near_branches", robot, kind, view.size))
-            if cell and cell.get("looked_around"):
-                lines.append(
-                    f"`{robot}`, {KIND_WORDS[kind]}: {cell['least_nearby']} of "
-                    f"{cell['looked_around']}"
-                )
+    lines = [
+        f"{where}: {near['least_nearby']} of {near['looked_around']}"
+        for _, where, _, near in _measured(view)
+        if near.get("looked_around")
+    ]
     if not lines:
         return []
     around = (
@@ -127,29 +130,21 @@ def _verdicts(view: View) -> list[str]:
     """The aims in closed form, each with what it missed by."""
     lines: list[str] = []
     compared: dict[str, int] = {}
-    for robot in view.robots("all_branches"):
-        for kind in plan.NO_KINDS:
-            where = f"`{robot}`, {KIND_WORDS[kind]}"
-            every, near = (
-                view.get(plan.branch_cell(cell, robot, kind, view.size))
-                for cell in ("all_branches", "near_branches")
+    for robot, where, every, near in _measured(view):
+        if "same" not in every:
+            continue
+        compared[robot] = compared.get(robot, 0) + every["count"]
+        times = every["mean_us"] / every["rival_mean_us"]
+        if times > TIMES_OF_RIVAL:
+            lines.append(f"{where}: `solve_all` {times:.2f} times {plan.BRANCH_RIVAL}")
+        if every["fewer"]:
+            lines.append(f"{where}: {every['fewer']} sets lack a branch")
+        if near["mean_us"] > NEAR_US:
+            lines.append(f"{where}: `near` {microseconds(near['mean_us'])} µs")
+        if near["smallest"] < near["solvable"]:
+            lines.append(
+                f"{where}: {near['solvable'] - near['smallest']} moves not smallest"
             )
-            if every is None or near is None or "same" not in every:
-                continue
-            compared[robot] = compared.get(robot, 0) + every["count"]
-            times = every["mean_us"] / every["rival_mean_us"]
-            if times > TIMES_OF_RIVAL:
-                lines.append(
-                    f"{where}: `solve_all` {times:.2f} times {plan.BRANCH_RIVAL}"
-                )
-            if every["fewer"]:
-                lines.append(f"{where}: {every['fewer']} sets lack a branch")
-            if near["mean_us"] > NEAR_US:
-                lines.append(f"{where}: `near` {microseconds(near['mean_us'])} µs")
-            if near["smallest"] < near["solvable"]:
-                lines.append(
-                    f"{where}: {near['solvable'] - near['smallest']} moves not smallest"
-                )
     if not compared:
         return []
     aims = (

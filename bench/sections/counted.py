@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from bench.analytic.counted import CHOSEN_BY
 from bench.analytic.plan import COUNTED, NUMBERS, counted_cell
 from bench.branches import APART
-from bench.markdown import NONE, mean_median, microseconds, table
+from bench.markdown import NONE, listed, mean_median, microseconds, table
 from bench.rivals import ENUMERATORS
 
 if TYPE_CHECKING:
@@ -59,10 +59,10 @@ def _cells(view: View) -> dict[tuple[str, str], dict[str, Any]]:
 
 def _conditions() -> str:
     sampled = [name for name in COUNTED if ENUMERATORS[name].of_samples]
-    numbers = " and ".join(map(str, NUMBERS))
+    numbers = listed(list(map(str, NUMBERS)))
     return (
         f"Reachable targets, asked for {numbers} answers: {OURS}'s `max`, ssik's "
-        f"`max_solutions`; {' and '.join(sampled)} get the number of samples, in "
+        f"`max_solutions`; {listed(sampled)} get the number of samples, in "
         f"brackets, that gives about as many right answers to {CHOSEN_BY} of them. "
         "Mean (median) of each call. *Right answers*: in the mean, those that are "
         f"{APART:g} rad apart in some joint. *Fewer, none*: targets with fewer than "

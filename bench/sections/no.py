@@ -92,7 +92,7 @@ def _conditions(view: View) -> str:
             "Default options, tolerances of 1e-6 m and 1e-6 rad, one thread, one "
             "process per solver; of each call the least time of three where that does "
             "not take long. Calls are from Python, those of "
-            f"{listed(timed_in_cpp(NAMES))} in C++."
+            f"{listed(timed_in_cpp(plan.NO_RIVALS))} in C++."
         ),
         (
             f"A rival's answer is right within {POSITION_TOLERANCE:g} m, "
@@ -102,9 +102,6 @@ def _conditions(view: View) -> str:
         _machine(view),
     )
     return bullets(notes)
-
-
-NAMES = plan.NO_RIVALS
 
 
 def _machine(view: View) -> str:

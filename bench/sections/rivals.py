@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any
 from bench.arms import RIVAL_ARMS
 from bench.bounds import at_least, share_text
 from bench.check import POSITION_TOLERANCE, ROTATION_TOLERANCE
-from bench.markdown import NONE, bullets, listed, microseconds, percent, table
+from bench.markdown import (
+    NONE,
+    bullets,
+    listed,
+    microseconds,
+    percent,
+    table,
+    text_table,
+)
 from bench.plans.rivals import rival_cell
 from bench.plans.shared import BESIDE_LEVEL, at_level
 from bench.rivals import RIVALS, timed_in_cpp
@@ -265,11 +273,7 @@ def _settings(view: View) -> str:
         if version is None:
             version = f"skipped: {view.report['missing'][name]}"
         rows.append([name, version, rival.measured, rival.settings])
-    lines = [
-        "| solver | version | timed | settings |",
-        "|---|---|---|---|",
-        *("| " + " | ".join(row) + " |" for row in rows),
-    ]
+    lines = [text_table(["solver", "version", "timed", "settings"], rows)]
     refused = sorted(
         {
             f"{name} on `{robot}`: {why}"

@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown import microseconds, percent, table
+from bench.sections.branches import KIND_WORDS
 from bench.tails.plan import KINDS, calls_cell
 from bench.tails.slowest import AGAIN, AROUND_M, AROUND_RAD, OTHERS, SLOWEST
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from bench.store import Settings
     from bench.view import View
 
-KIND_WORDS = {KINDS[0]: "reachable", KINDS[1]: "random rotations"}
 STAGE_WORDS = {
     "query_us": "what is known of the solutions (closed form, roots, sweep, intervals) "
     "and the choice of seeds",

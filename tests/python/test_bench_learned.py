@@ -26,16 +26,6 @@ from bench.learned.mdn import Mdn
 import iksel
 
 SEED = 7
-WHY = [
-    "singular",
-    "regular",
-    "at_jumps",
-    "jumps",
-    "elsewhere",
-    "ranked",
-    "any",
-    "beside_label",
-]
 REPORTED = [
     (robot, model, recipe)
     for robot in PAPER_ARMS
